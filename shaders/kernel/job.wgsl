@@ -1,0 +1,22 @@
+// What every kernel reads: which invocations this dispatch does, and how a lobe's components
+// (A, B) become channels.
+
+struct Job {
+    weights: array<vec4f, 3>, // channel c = dot(weights[c].xy, (A, B))
+    first: u32,               // first invocation of this dispatch
+    end: u32,                 // one past its last
+    base: u32,                // the invocation whose result is the first of the output buffer
+    accumulate: u32,          // 1: add to what an earlier lobe wrote
+    columns: u32,             // counts, by kernel
+    azimuths: u32,
+    nodes: u32,
+    pad: u32,
+}
+
+const INV_PI: real = 0.3183098861837907;
+
+@group(0) @binding(0) var<uniform> job: Job;
+
+fn channel(c: u32, ab: real2) -> real {
+    return real(job.weights[c].x) * ab.x + real(job.weights[c].y) * ab.y;
+}

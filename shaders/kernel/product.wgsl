@@ -1,0 +1,29 @@
+// Hemispherical integrals over (θe, δφ), whatever the nodes: one invocation a (roughness, θi, θe),
+// which sums the azimuths in blocks, so that rounding grows with the root of their number.
+
+@group(0) @binding(1) var<storage, read> alphas: array<real>;
+@group(0) @binding(2) var<storage, read> pairs: array<Pair>;
+@group(0) @binding(3) var<storage, read> azimuths: array<Azimuth>;
+@group(0) @binding(4) var<storage, read_write> raw: array<real2>;
+
+const BLOCK = 32u;
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let invocation = job.first + id.x;
+    if invocation >= job.end {
+        return;
+    }
+    let pair = pairs[invocation % job.columns];
+    let alpha = alphas[invocation / job.columns];
+    var sum = real2();
+    for (var block = 0u; block < job.azimuths; block += BLOCK) {
+        var inner = real2();
+        for (var k = block; k < min(block + BLOCK, job.azimuths); k++) {
+            let azimuth = azimuths[k];
+            inner += azimuth.weight * lobe(pair, azimuth, alpha);
+        }
+        sum += inner;
+    }
+    raw[invocation - job.base] = sum;
+}

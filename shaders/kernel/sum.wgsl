@@ -1,0 +1,33 @@
+// The outer sum of an integral: each texel is a weighted sum of job.nodes raw results, in blocks,
+// turned into channels.
+
+@group(0) @binding(1) var<storage, read> outer: array<real>;
+@group(0) @binding(2) var<storage, read> raw: array<real2>;
+@group(0) @binding(3) var<storage, read_write> values: array<f32>;
+
+const BLOCK = 32u;
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let texel = job.first + id.x;
+    if texel >= job.end {
+        return;
+    }
+    var sum = real2();
+    for (var block = 0u; block < job.nodes; block += BLOCK) {
+        var inner = real2();
+        for (var k = block; k < min(block + BLOCK, job.nodes); k++) {
+            inner += outer[k] * raw[(texel - job.base) * job.nodes + k];
+        }
+        sum += inner;
+    }
+    for (var c = 0u; c < job.columns; c++) {
+        let at = (texel - job.base) * job.columns + c;
+        let value = f32(channel(c, sum));
+        if job.accumulate == 1u {
+            values[at] += value;
+        } else {
+            values[at] = value;
+        }
+    }
+}

@@ -1,0 +1,36 @@
+// Factors of a pair of directions (DESIGN: evaluate from angles, not from vectors). The host makes
+// them in f64; everything below is a product or a sum of non-negative terms, so nothing cancels and
+// no rewrite that a driver may do can lose the specular peak.
+
+struct Pair {
+    hz2: real,    // (cos θi + cos θe)²
+    dt2: real,    // (sin θi − sin θe)²
+    ss: real,     // sin θi sin θe
+    sd: real,     // sin²((θi − θe)/2)
+    mu_i: real,   // cos θi
+    mu_e: real,   // cos θe
+    bin: real,    // 1 / weight of this θe cell where it holds the mirror direction, else 0
+    pad: real,
+}
+
+struct Azimuth {
+    sin2: real,   // sin²(δ/2)
+    cos2: real,   // cos²(δ/2)
+    weight: real, // of this δφ in an integral
+    bin: real,    // 1 / weight of this δφ cell where it holds δφ = 0, else 0
+}
+
+struct Half {
+    ht2: real,         // |ωi + ωe|², tangential part
+    h2: real,          // |ωi + ωe|² = 4 (ωi·ωm)²
+    c: real,           // ωi·ωm
+    one_minus_c: real, // 1 − ωi·ωm
+}
+
+fn half_vector(p: Pair, a: Azimuth) -> Half {
+    let ht2 = p.dt2 + 4.0 * p.ss * a.sin2;
+    let h2 = ht2 + p.hz2;
+    // |ωi − ωe|²/4 = 1 − (ωi·ωm)² = sin²((θi − θe)/2) + sin θi sin θe cos²(δ/2)
+    let c = 0.5 * sqrt(h2);
+    return Half(ht2, h2, c, (p.sd + p.ss * a.cos2) / (1.0 + c));
+}

@@ -1,0 +1,195 @@
+//! The cross-check: a table's texels against the f64 reference.
+
+use crate::axis::Variable;
+use crate::error::Result;
+use crate::plan::{Lobe, TablePlan};
+use crate::quantity::Evaluation;
+use crate::reference::Angles;
+use crate::table::{ErrorKind, TableError, indices};
+use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// How many texels of a table to compare.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Check {
+    /// The corners and a low-discrepancy set: at least so many, or all if there are fewer; 0: none.
+    Sample(usize),
+    /// Every one.
+    All,
+}
+
+impl Default for Check {
+    fn default() -> Self {
+        Self::Sample(256)
+    }
+}
+
+impl std::str::FromStr for Check {
+    type Err = String;
+
+    fn from_str(s: &str) -> Result<Self, Self::Err> {
+        match s {
+            "all" => Ok(Self::All),
+            _ => s.parse().map(Self::Sample).map_err(|_| format!("\"{s}\" is neither a count nor all")),
+        }
+    }
+}
+
+/// Relative errors of values are taken of max(f, this), in sr⁻¹: below it f32 runs out of exponent.
+pub const VALUE_FLOOR: f64 = 1e-30;
+
+/// Compares `values` with the reference. A NaN anywhere makes the largest error infinite.
+///
+/// `tick` is called between comparisons and stops them by an error.
+pub fn cross_check(
+    table: &TablePlan,
+    values: &[f32],
+    check: Check,
+    estimate: Option<f64>,
+    tick: &(impl Fn(f64) -> Result<()> + Sync),
+) -> Result<TableError> {
+    let texels = match check {
+        Check::All => (0..table.texels()).collect(),
+        Check::Sample(n) => sample(&table.shape(), n),
+    };
+    let floor = (table.quantity.error == ErrorKind::Relative).then_some(VALUE_FLOOR);
+    let mut error = TableError {
+        kind: table.quantity.error,
+        floor,
+        estimate,
+        measured_max: None,
+        measured_rms: None,
+        texels_checked: 0,
+        worst: BTreeMap::new(),
+    };
+    let known = table.lobes.iter().all(|lobe| lobe.model.reference.is_some());
+    if texels.is_empty() || !known {
+        return Ok(error);
+    }
+    let channels = table.channels.len();
+    let share = 1.0 / texels.len() as f64;
+    let found = texels
+        .par_iter()
+        .map(|&texel| {
+            let truth = reference(table, texel);
+            let differences = truth.iter().zip(&values[texel * channels..]).map(|(&truth, &value)| {
+                let difference = (f64::from(value) - truth).abs();
+                let difference = floor.map_or(difference, |floor| difference / truth.max(floor));
+                if difference.is_nan() { f64::INFINITY } else { difference }
+            });
+            let found: Vec<_> = differences.zip(truth.iter().copied()).map(|(d, truth)| (d, truth, texel)).collect();
+            tick(share)?;
+            Ok(found)
+        })
+        .collect::<Result<Vec<_>>>()?;
+    let found: Vec<_> = found.into_iter().flat_map(|texel| texel.into_iter().enumerate()).collect();
+    let squares: f64 = found.iter().map(|(_, (d, ..))| d * d).sum();
+    let worst = found.iter().max_by(|x, y| x.1.0.total_cmp(&y.1.0));
+    if let Some(&(channel, (largest, truth, texel))) = worst {
+        error.measured_max = Some(largest);
+        error.measured_rms = Some((squares / found.len() as f64).sqrt());
+        error.texels_checked = texels.len();
+        let coordinates = table.axes.iter().zip(indices(&table.shape(), texel));
+        error.worst = coordinates.map(|(axis, k)| (axis.variable.name().into(), axis.values[k])).collect();
+        error.worst.insert("channel".into(), channel as f64);
+        error.worst.insert("value".into(), f64::from(values[texel * channels + channel]));
+        error.worst.insert("reference".into(), truth);
+    }
+    Ok(error)
+}
+
+/// The reference's channels of one texel. NaN where the reference has no value.
+fn reference(table: &TablePlan, texel: usize) -> Vec<f64> {
+    let at: BTreeMap<_, _> = table
+        .axes
+        .iter()
+        .zip(indices(&table.shape(), texel))
+        .map(|(axis, k)| (axis.variable, axis.values[k]))
+        .collect();
+    let mut channels = vec![0.0; table.channels.len()];
+    for lobe in &table.lobes {
+        let [a, b] = reference_lobe(table.quantity.evaluation, lobe, &at);
+        for (channel, [weight_a, weight_b]) in channels.iter_mut().zip(&lobe.weights) {
+            *channel += weight_a * a + weight_b * b;
+        }
+    }
+    channels
+}
+
+fn reference_lobe(evaluation: Evaluation, lobe: &Lobe, at: &BTreeMap<Variable, f64>) -> [f64; 2] {
+    let Some(reference) = lobe.model.reference else { return [f64::NAN; 2] };
+    let get = |variable| at.get(&variable).copied();
+    let roughness = get(Variable::Roughness).or(lobe.roughness).unwrap_or(0.0);
+    let alpha = if lobe.model.has_roughness { roughness * roughness } else { 0.0 };
+    let theta_i = get(Variable::ThetaI).unwrap_or(0.0);
+    match evaluation {
+        Evaluation::Value => {
+            let theta_e = get(Variable::ThetaE).unwrap_or(0.0);
+            let delta_phi = get(Variable::DeltaPhi).unwrap_or(0.0);
+            reference.brdf(&Angles { theta_i, theta_e, delta_phi }, alpha).unwrap_or([f64::NAN; 2])
+        }
+        Evaluation::Directional => reference.rho_dh(get(Variable::Mu).unwrap_or(theta_i.cos()), alpha),
+        Evaluation::Hemispherical => reference.rho_hh(alpha),
+    }
+}
+
+/// At least `n` different texels: every corner of the axes, where extremes meet, and steps of the
+/// golden section through the rest.
+fn sample(shape: &[usize], n: usize) -> Vec<usize> {
+    let texels: usize = shape.iter().product();
+    if n == 0 {
+        return Vec::new();
+    }
+    if n >= texels {
+        return (0..texels).collect();
+    }
+    let mut chosen = BTreeSet::new();
+    for corner in 0..1usize << shape.len() {
+        let at = |(k, &count): (usize, &usize)| if corner >> k & 1 == 1 { count - 1 } else { 0 };
+        chosen.insert(shape.iter().enumerate().map(|axis| (at(axis), axis.1)).fold(0, |flat, (k, n)| flat * n + k));
+    }
+    // A stride without a common factor visits every texel before it repeats one.
+    let golden = (texels as f64 * 0.618_033_988_749_894_9) as usize;
+    let stride = (golden.max(1)..).find(|&s| gcd(s, texels) == 1).unwrap_or(1);
+    let mut texel = 0;
+    while chosen.len() < n {
+        texel = (texel + stride) % texels;
+        chosen.insert(texel);
+    }
+    chosen.into_iter().collect()
+}
+
+fn gcd(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { gcd(b, a % b) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::axis::Axis;
+    use crate::{models, quantity};
+
+    #[test]
+    fn a_sample_has_the_corners_and_no_repeats() {
+        let chosen = sample(&[7, 9, 11], 100);
+        assert_eq!(chosen.len(), 100);
+        assert!([0, 10, 7 * 9 * 11 - 1, 6 * 9 * 11].iter().all(|corner| chosen.contains(corner)));
+        assert_eq!(sample(&[2, 3], 256), (0..6).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn the_comparer_sees_one_bad_texel_and_nan() {
+        let axes = vec![Axis::natural(Variable::ThetaI, 40).unwrap()];
+        let lambert = models::find("lambert").unwrap();
+        let table = TablePlan::basis("t", &quantity::RHO_DH, lambert, None, axes).unwrap();
+        let mut values = vec![1.0; 40];
+        let check = |values: &[f32]| cross_check(&table, values, Check::All, None, &|_| Ok(())).unwrap();
+        assert!(check(&values).measured_max.unwrap() < 1e-9);
+        values[17] = 1.001;
+        let error = check(&values);
+        assert!((error.measured_max.unwrap() - 1e-3).abs() < 1e-6);
+        assert_eq!(error.worst["theta_i"], table.axes[0].values[17]);
+        values[17] = f32::NAN;
+        assert_eq!(check(&values).measured_max, Some(f64::INFINITY));
+    }
+}

@@ -1,0 +1,80 @@
+//! The CPU path: the same rules as the kernels, in f64, on all cores.
+
+use crate::models::ALPHA_MIN_INTEGRAL;
+use crate::plan::{Lobe, TablePlan};
+use crate::work::{Inner, Work, WorkKind};
+use rayon::prelude::*;
+
+/// The values of a table, row-major, channels last.
+///
+/// `tick` is called as work is done, with a share of 1, and stops it by returning an error.
+pub(crate) fn evaluate<E: Send>(
+    table: &TablePlan,
+    tick: &(impl Fn(f64) -> Result<(), E> + Sync),
+) -> Result<Vec<f32>, E> {
+    let channels = table.channels.len();
+    let mut sums = vec![0.0; table.texels() * channels];
+    let share = 1.0 / table.lobes.len() as f64;
+    for lobe in &table.lobes {
+        let work = Work::new(table, lobe);
+        match &work.kind {
+            WorkKind::Values { pairs, azimuths } => {
+                let rows = work.alphas.len() * pairs.len();
+                sums.par_chunks_mut(azimuths.len() * channels).enumerate().try_for_each(|(row, out)| {
+                    let (alpha, pair) = (work.alphas[row / pairs.len()], &pairs[row % pairs.len()]);
+                    for (azimuth, out) in azimuths.iter().zip(out.chunks_mut(channels)) {
+                        add(out, lobe, (lobe.model.lobe)(pair, azimuth, alpha));
+                    }
+                    tick(share / rows as f64)
+                })?;
+            }
+            WorkKind::Integrals { inner, outer } => {
+                let texels = sums.len() / channels;
+                sums.par_chunks_mut(channels).enumerate().try_for_each(|(texel, out)| {
+                    let mut sum = [0.0; 2];
+                    for (k, weight) in outer.iter().enumerate() {
+                        let at = texel * outer.len() + k;
+                        let alpha = work.alphas[at / inner.count()];
+                        let [a, b] = integrate(inner, lobe, at % inner.count(), alpha);
+                        sum = [sum[0] + weight * a, sum[1] + weight * b];
+                    }
+                    add(out, lobe, sum);
+                    tick(share / texels as f64)
+                })?;
+            }
+        }
+    }
+    Ok(sums.into_iter().map(|x| x as f32).collect())
+}
+
+fn add(out: &mut [f64], lobe: &Lobe, [a, b]: [f64; 2]) {
+    for (out, [weight_a, weight_b]) in out.iter_mut().zip(&lobe.weights) {
+        *out += weight_a * a + weight_b * b;
+    }
+}
+
+/// The inner integral `k` at α.
+fn integrate(inner: &Inner, lobe: &Lobe, k: usize, alpha: f64) -> [f64; 2] {
+    let mut sum = [0.0; 2];
+    let mut add = |weight: f64, [a, b]: [f64; 2]| sum = [sum[0] + weight * a, sum[1] + weight * b];
+    match inner {
+        Inner::Slopes { slopes, mus, .. } if alpha < ALPHA_MIN_INTEGRAL => return (slopes.mirror_limit)(mus[k]),
+        Inner::Slopes { slopes, mus, azimuths, nodes } => {
+            let per_column = azimuths.len() / mus.len();
+            for &[c, t_max, t_max_inverse, weight] in &azimuths[k * per_column..(k + 1) * per_column] {
+                let end = (slopes.end)(t_max, alpha);
+                for node in nodes {
+                    let f = (slopes.integrand)(end * node.x, [c, t_max, t_max_inverse], mus[k], alpha);
+                    add(weight * end * node.weight, f);
+                }
+            }
+        }
+        Inner::Product { pairs, azimuths } => {
+            for azimuth in azimuths {
+                add(azimuth.weight, (lobe.model.lobe)(&pairs[k], azimuth, alpha));
+            }
+        }
+        Inner::Analytic { directional, mus } => return directional(mus[k], alpha),
+    }
+    sum
+}

@@ -1,0 +1,107 @@
+//! OpenEXR files: 32-bit float, named channels, uncompressed scanlines, all else as attributes.
+
+use super::{Provenance, entry};
+use crate::error::{Error, Result};
+use crate::table::Table;
+use ::exr::prelude::{
+    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, Layer, LayerAttributes, Text,
+    WritableImage,
+};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::io::Cursor;
+
+/// The bytes of the file.
+pub(super) fn encode(table: &Table, provenance: &Provenance) -> Result<Vec<u8>> {
+    let fault = |why: &dyn std::fmt::Display| Error::Internal(format!("table {}: EXR: {why}", table.name));
+    let stride = table.channels.len();
+    let channels = table.channels.iter().enumerate().map(|(c, name)| {
+        let samples = table.values.iter().skip(c).step_by(stride).copied().collect();
+        AnyChannel::new(text(name), FlatSamples::F32(samples))
+    });
+
+    let mut attributes = LayerAttributes::default();
+    for (name, value) in describe(table).map_err(|e| fault(&e))? {
+        attributes.other.insert(text(&name), AttributeValue::Text(text(&value)));
+    }
+    for (name, value) in provenance {
+        let name = text(&format!("gonio:{name}"));
+        if attributes.other.insert(name, AttributeValue::Text(text(value))).is_some() {
+            return Err(fault(&"provenance has the name of an attribute of the table"));
+        }
+    }
+    attributes.software_name = Some(text(concat!("gonio ", env!("CARGO_PKG_VERSION"))));
+    attributes.comments = Some(text(&in_words(table)));
+
+    let channels = AnyChannels::sort(channels.collect());
+    let layer = Layer::new(table.image_size(), attributes, Encoding::UNCOMPRESSED, channels);
+    let mut bytes = Cursor::new(Vec::new());
+    Image::from_layer(layer).write().to_buffered(&mut bytes).map_err(|e| fault(&e))?;
+    let mut bytes = bytes.into_inner();
+    sort_attributes(&mut bytes).ok_or_else(|| fault(&"the header cannot be read back"))?;
+    Ok(bytes)
+}
+
+/// The table without its values and without times, as attributes.
+fn describe(table: &Table) -> serde_json::Result<BTreeMap<String, String>> {
+    fn json(value: &impl Serialize) -> serde_json::Result<String> {
+        serde_json::to_string(value)
+    }
+    let attributes = [
+        ("name", table.name.clone()),
+        ("quantity", table.quantity.clone()),
+        ("unit", table.unit.clone()),
+        ("subject", table.subject.clone()),
+        ("parameters", json(&table.parameters)?),
+        ("axes", json(&entry::axes(table))?),
+        ("channels", json(&table.channels)?),
+        ("rule", table.rule.clone()),
+        ("precision", table.precision.clone()),
+        ("error", json(&table.error)?),
+        ("version", env!("CARGO_PKG_VERSION").into()),
+    ];
+    Ok(attributes.into_iter().map(|(name, value)| (format!("gonio:{name}"), value)).collect())
+}
+
+/// How to read the image, for a person who opens it in a viewer.
+fn in_words(table: &Table) -> String {
+    let axis = |axis: &crate::axis::Axis| format!("{} ({})", axis.variable.name(), axis.len());
+    let axes: Vec<_> = table.axes.iter().map(axis).collect();
+    format!(
+        "{} of {}, unit {}. Axes, slowest first: {}. Width is the last axis, height the product of the \
+         others, row-major; row 0 holds the first value. See gonio:axes for the sample positions.",
+        table.quantity,
+        table.subject,
+        table.unit,
+        if axes.is_empty() { "none".into() } else { axes.join(", ") }
+    )
+}
+
+/// UTF-8, as the OpenEXR library reads strings; `Text::from` would panic beyond Latin-1.
+fn text(utf8: &str) -> Text {
+    Text::from_slice_unchecked(utf8.as_bytes())
+}
+
+/// Puts the header's attributes in the order of their names, in place.
+///
+/// The crate keeps them in a hash map and writes them in a new order each time, but the same table
+/// must give the same bytes. Sorting moves no other byte, so the offsets of the scanlines stay right.
+/// The layout is that of openexr.com, "OpenEXR File Layout": magic and version (4 bytes each), then per
+/// attribute name\0 type\0 size (i32) value, then \0.
+fn sort_attributes(file: &mut [u8]) -> Option<()> {
+    const START: usize = 8;
+    let mut attributes = Vec::new();
+    let mut rest = file.get(START..)?;
+    while *rest.first()? != 0 {
+        let name = rest.iter().position(|&byte| byte == 0)?;
+        let kind = name + 1 + rest.get(name + 1..)?.iter().position(|&byte| byte == 0)?;
+        let size = rest.get(kind + 1..)?.first_chunk().copied().map(i32::from_le_bytes)?;
+        let (attribute, after) = rest.split_at_checked(kind + 5 + usize::try_from(size).ok()?)?;
+        attributes.push((attribute.get(..name)?, attribute));
+        rest = after;
+    }
+    attributes.sort_unstable();
+    let sorted: Vec<u8> = attributes.into_iter().flat_map(|(_, attribute)| attribute).copied().collect();
+    file.get_mut(START..)?.get_mut(..sorted.len())?.copy_from_slice(&sorted);
+    Some(())
+}

@@ -1,0 +1,88 @@
+//! Files: one writer a format, and whole sets of tables written all or nothing.
+
+mod canvas;
+mod colormap;
+mod entry;
+mod exr;
+mod manifest;
+mod npy;
+mod panel;
+mod png;
+mod scale;
+mod set;
+
+pub use entry::TableEntry;
+pub use manifest::{read_manifest, verify};
+pub use set::{Files, TableSet};
+
+use crate::error::{Error, Result};
+use crate::table::Table;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::{fmt, str};
+
+/// What a table came from, by name: the scene, its hash, the device. No times: the same input gives
+/// the same bytes.
+pub type Provenance = BTreeMap<String, String>;
+
+/// A file format for tables.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Format {
+    /// OpenEXR: 32-bit float, named channels, uncompressed scanlines; width is the last axis, height the
+    /// product of the others, row 0 the first value; axes and provenance as attributes.
+    Exr,
+    /// NumPy: little-endian float32, shape = axes in order, channel last.
+    Npy,
+    /// A preview to look at, not to read values from.
+    Png,
+}
+
+impl Format {
+    /// All formats.
+    pub const ALL: [Self; 3] = [Self::Exr, Self::Npy, Self::Png];
+
+    /// The name on the command line and in manifests; also the file's extension.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Exr => "exr",
+            Self::Npy => "npy",
+            Self::Png => "png",
+        }
+    }
+
+    /// The bytes of a file that holds the table: the same table, the same bytes.
+    ///
+    /// # Errors
+    /// When the format cannot hold the table: an image too large for EXR, say.
+    pub fn encode(self, table: &Table, provenance: &Provenance) -> Result<Vec<u8>> {
+        let (channels, values) = (table.channels.len(), table.values.len());
+        if channels == 0 || table.texels().checked_mul(channels) != Some(values) {
+            return Err(Error::Internal(format!(
+                "table {}: {values} values for shape {:?} and {channels} channels",
+                table.name,
+                table.shape()
+            )));
+        }
+        match self {
+            Self::Exr => exr::encode(table, provenance),
+            Self::Npy => npy::encode(table),
+            Self::Png => png::encode(table),
+        }
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl str::FromStr for Format {
+    type Err = Error;
+
+    fn from_str(word: &str) -> Result<Self> {
+        let found = Self::ALL.into_iter().find(|format| format.name() == word.trim());
+        found.ok_or_else(|| Error::input(format!("unknown format \"{word}\"; use exr, npy or png")))
+    }
+}

@@ -1,0 +1,264 @@
+//! Records the baking of a table on a device that the caller owns.
+
+use super::compose::{Kernel, compose, validate};
+use super::stage::{Job, Stage, Stages};
+use crate::error::{Error, Result};
+use crate::models::Model;
+use crate::plan::TablePlan;
+use crate::quantity::Evaluation;
+use crate::work::Work;
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+
+/// Bakes tables on a device.
+///
+/// Pipelines are compiled when first needed and kept.
+pub struct Baker {
+    pub(super) device: wgpu::Device,
+    pub(super) queue: wgpu::Queue,
+    pipelines: Mutex<HashMap<PipelineKey, wgpu::ComputePipeline>>,
+    composing: Mutex<f64>,
+}
+
+type PipelineKey = (Kernel, Option<&'static str>, usize);
+
+/// A table on the device: `height` rows of `width` texels of `channels` floats.
+#[derive(Debug, Clone)]
+pub struct Recorded {
+    /// Its usages are `STORAGE | COPY_SRC`.
+    pub buffer: wgpu::Buffer,
+    /// Texels along the table's last axis.
+    pub width: usize,
+    /// Texels from one row to the next: rows of values are padded to whole quads.
+    pub row: usize,
+    /// The product of the other axes.
+    pub height: usize,
+    /// Channels of a texel.
+    pub channels: usize,
+}
+
+/// One dispatch, ready to encode.
+pub(super) struct Step {
+    pipeline: wgpu::ComputePipeline,
+    bind_group: wgpu::BindGroup,
+    workgroups: u32,
+    /// How many evaluations it does, to weigh progress with.
+    pub evaluations: u64,
+}
+
+/// A part of a table that is computed in one buffer.
+pub(super) struct Tile {
+    pub buffer: wgpu::Buffer,
+    pub steps: Vec<Step>,
+}
+
+/// The shape of a table's result: what a tile is a range of.
+#[derive(Clone, Copy)]
+pub(super) struct Layout {
+    /// Rows of a table of values, texels of a table of integrals.
+    pub units: usize,
+    /// Texels of a unit, and with its padding.
+    pub texels: usize,
+    pub padded: usize,
+    pub channels: usize,
+}
+
+/// What a dispatch may cost: 8 million evaluations stay below 100 ms on two cores of software
+/// Vulkan, at 100 million a second.
+const EVALUATIONS_PER_DISPATCH: usize = 1 << 23;
+/// 64 a workgroup, and at most 65,535 workgroups.
+const INVOCATIONS_PER_DISPATCH: usize = 1 << 21;
+/// Bytes of a tile's result, and of the raw integrals behind it.
+const TILE_BYTES: usize = 1 << 25;
+const WORKGROUP: usize = 64;
+
+impl Layout {
+    pub fn new(table: &TablePlan) -> Self {
+        let channels = table.channels.len();
+        if !is_value(table) {
+            return Self { units: table.texels(), texels: 1, padded: 1, channels };
+        }
+        let texels = table.axes.last().map_or(1, |axis| axis.len());
+        Self { units: table.texels() / texels, texels, padded: texels.next_multiple_of(4), channels }
+    }
+
+    /// Bytes of so many units.
+    pub fn bytes(&self, units: usize) -> usize {
+        units * self.padded * self.channels * 4
+    }
+
+    /// The ranges of units that fit a tile each, by size alone: results must not depend on speed.
+    pub fn tiles(&self, stages: &[Stages]) -> Vec<Range<usize>> {
+        let raw = stages.iter().map(Stages::raw_bytes_per_unit).max().unwrap_or(0);
+        let per_tile = (TILE_BYTES / raw.max(self.bytes(1))).max(1);
+        (0..self.units).step_by(per_tile).map(|first| first..(first + per_tile).min(self.units)).collect()
+    }
+}
+
+impl Baker {
+    /// A baker on the caller's device. wgpu's handles are shared, so it keeps cheap clones.
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
+        Self { device: device.clone(), queue: queue.clone(), pipelines: Mutex::default(), composing: Mutex::default() }
+    }
+
+    /// Records the baking of `table` into `encoder` and returns the buffer that will hold it. Does
+    /// not submit, read back or block; the rule alone answers for the error then.
+    ///
+    /// # Errors
+    /// When the table does not fit one binding of the device.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, table: &TablePlan) -> Result<Recorded> {
+        let layout = Layout::new(table);
+        let stages = self.stages(table)?;
+        let raw = stages.iter().map(Stages::raw_bytes_per_unit).max().unwrap_or(0) * layout.units;
+        let bytes = layout.bytes(layout.units).max(raw);
+        let limits = self.device.limits();
+        let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        if bytes as u64 > limit {
+            return Err(Error::Device(format!(
+                "table \"{}\" takes {bytes} bytes in one piece, but the device binds at most {limit}; take fewer samples",
+                table.name
+            )));
+        }
+        let tile = self.tile(&layout, &stages, 0..layout.units)?;
+        for step in &tile.steps {
+            step.encode(encoder);
+        }
+        let width = table.axes.last().map_or(1, |axis| axis.len());
+        let row = if is_value(table) { layout.padded } else { width };
+        Ok(Recorded { buffer: tile.buffer, width, row, height: table.texels() / width, channels: layout.channels })
+    }
+
+    /// The work of every lobe of a table, uploaded.
+    pub(super) fn stages(&self, table: &TablePlan) -> Result<Vec<Stages>> {
+        table.lobes.iter().enumerate().map(|(k, lobe)| Stages::new(self, lobe, &Work::new(table, lobe), k > 0)).collect()
+    }
+
+    /// The steps of one tile, and the buffer that they fill.
+    pub(super) fn tile(&self, layout: &Layout, stages: &[Stages], units: Range<usize>) -> Result<Tile> {
+        let mut tile = Tile { buffer: self.output(layout.bytes(units.len())), steps: Vec::new() };
+        for Stages { inner, sum } in stages {
+            let range = units.start * inner.per_unit..units.end * inner.per_unit;
+            match sum {
+                None => self.steps(inner, &[], range, &tile.buffer, &mut tile.steps)?,
+                Some(sum) => {
+                    let raw = self.output(range.len() * RAW_BYTES);
+                    self.steps(inner, &[], range, &raw, &mut tile.steps)?;
+                    self.steps(sum, &[&raw], units.clone(), &tile.buffer, &mut tile.steps)?;
+                }
+            }
+        }
+        Ok(tile)
+    }
+
+    /// The dispatches of a stage over `range` of its invocations: as many as the cost asks for.
+    fn steps(
+        &self,
+        stage: &Stage,
+        more_inputs: &[&wgpu::Buffer],
+        range: Range<usize>,
+        output: &wgpu::Buffer,
+        steps: &mut Vec<Step>,
+    ) -> Result<()> {
+        let pipeline = self.pipeline(stage.kernel, stage.model, stage.channels)?;
+        let layout = pipeline.get_bind_group_layout(0);
+        let per_step = (EVALUATIONS_PER_DISPATCH / stage.cost).clamp(WORKGROUP, INVOCATIONS_PER_DISPATCH);
+        for first in range.clone().step_by(per_step) {
+            let end = (first + per_step).min(range.end);
+            let job = Job { first: count(first)?, end: count(end)?, base: count(range.start)?, ..stage.job };
+            let job = self.init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
+            let buffers = [&job].into_iter().chain(&stage.inputs).chain(more_inputs.iter().copied()).chain([output]);
+            let entries: Vec<_> = (0..)
+                .zip(buffers)
+                .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+                .collect();
+            steps.push(Step {
+                pipeline: pipeline.clone(),
+                bind_group: self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                    label: None,
+                    layout: &layout,
+                    entries: &entries,
+                }),
+                workgroups: count((end - first).div_ceil(WORKGROUP))?,
+                evaluations: ((end - first) * stage.cost) as u64,
+            });
+        }
+        Ok(())
+    }
+
+    /// The pipeline of a kernel, composed, validated and compiled once.
+    pub(super) fn pipeline(
+        &self,
+        kernel: Kernel,
+        model: Option<&'static Model>,
+        channels: usize,
+    ) -> Result<wgpu::ComputePipeline> {
+        let key = (kernel, model.map(|m| m.name), channels);
+        let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(pipeline) = pipelines.get(&key) {
+            return Ok(pipeline.clone());
+        }
+        let label = format!("gonio {kernel:?} {}", key.1.unwrap_or_default());
+        let start = Instant::now();
+        let composed = validate(&compose(kernel, model, channels))?;
+        *self.composing.lock().unwrap_or_else(PoisonError::into_inner) += start.elapsed().as_secs_f64();
+        let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(&label),
+            source: wgpu::ShaderSource::Naga(Cow::Owned(composed)),
+        });
+        let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(&label),
+            layout: None,
+            module: &module,
+            entry_point: None,
+            compilation_options: Default::default(),
+            cache: None,
+        });
+        pipelines.insert(key, pipeline.clone());
+        Ok(pipeline)
+    }
+
+    /// Seconds spent so far on composing and validating shaders.
+    pub(super) fn compose_seconds(&self) -> f64 {
+        *self.composing.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A buffer with the given bytes.
+    pub(super) fn init(&self, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        self.device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage })
+    }
+
+    /// A buffer for results. wgpu clears it when it is first used; kernels write all of it.
+    pub(super) fn output(&self, bytes: usize) -> wgpu::Buffer {
+        self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: bytes as u64,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        })
+    }
+}
+
+fn is_value(table: &TablePlan) -> bool {
+    table.quantity.evaluation == Evaluation::Value
+}
+
+/// Bytes of one raw integral, (A, B).
+pub(super) const RAW_BYTES: usize = 8;
+
+/// A count as the device takes it.
+pub(super) fn count(n: usize) -> Result<u32> {
+    u32::try_from(n).map_err(|_| Error::Device(format!("{n} is more than a device counts to; take fewer samples")))
+}
+
+impl Step {
+    pub(super) fn encode(&self, encoder: &mut wgpu::CommandEncoder) {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.bind_group, &[]);
+        pass.dispatch_workgroups(self.workgroups, 1, 1);
+    }
+}

@@ -1,0 +1,16 @@
+//! The device side: composing the shaders that a plan needs, and recording their work.
+//!
+//! [`Baker`] works on a device that the caller owns and records into the caller's encoder; the
+//! headless bake is the same recording, split into submissions and read back.
+
+mod baker;
+mod compose;
+mod device;
+mod evaluate;
+mod stage;
+mod texture;
+
+pub use baker::{Baker, Recorded};
+pub use compose::{Kernel, compose, validate};
+pub use device::{Adapter, Device, DeviceChoice, adapters};
+pub use texture::TextureFormat;

@@ -1,0 +1,146 @@
+//! The work of one lobe, uploaded: f64 factors rounded to f32, as the kernels lay them out.
+
+use super::baker::{Baker, RAW_BYTES, count};
+use super::compose::Kernel;
+use crate::error::Result;
+use crate::models::{ALPHA_MIN_INTEGRAL, Model};
+use crate::pair::{Azimuth, AzimuthF32, Pair, PairF32};
+use crate::plan::Lobe;
+use crate::work::{Inner, Work, WorkKind};
+use bytemuck::{Pod, Zeroable};
+
+/// The stages of one lobe: values in one, or raw integrals and then their outer sum.
+pub(super) struct Stages {
+    pub inner: Stage,
+    pub sum: Option<Stage>,
+}
+
+/// A kernel and what it reads.
+pub(super) struct Stage {
+    pub kernel: Kernel,
+    pub model: Option<&'static Model>,
+    /// Channels, where the kernel is composed for them.
+    pub channels: usize,
+    pub job: Job,
+    pub inputs: Vec<wgpu::Buffer>,
+    /// Invocations for each unit of the table (see `Layout`).
+    pub per_unit: usize,
+    /// Evaluations of an invocation.
+    pub cost: usize,
+}
+
+/// `Job` of `shaders/kernel/job.wgsl`.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct Job {
+    pub weights: [[f32; 4]; 3],
+    pub first: u32,
+    pub end: u32,
+    pub base: u32,
+    pub accumulate: u32,
+    pub columns: u32,
+    pub azimuths: u32,
+    pub nodes: u32,
+    pub pad: u32,
+}
+
+impl Stages {
+    pub fn new(baker: &Baker, lobe: &Lobe, work: &Work, accumulate: bool) -> Result<Self> {
+        let channels = lobe.weights.len();
+        let job = Job { accumulate: u32::from(accumulate), ..Job::new(lobe) };
+        match &work.kind {
+            WorkKind::Values { pairs, azimuths } => Ok(Self {
+                inner: Stage {
+                    kernel: Kernel::Values,
+                    model: Some(lobe.model),
+                    channels,
+                    job: Job { columns: count(pairs.len())?, azimuths: count(azimuths.len())?, ..job },
+                    inputs: vec![baker.reals(&work.alphas), baker.pairs(pairs), baker.azimuths(azimuths)],
+                    per_unit: azimuths.len().div_ceil(4),
+                    cost: 4,
+                },
+                sum: None,
+            }),
+            WorkKind::Integrals { inner, outer } => Ok(Self {
+                inner: Stage {
+                    model: Some(lobe.model),
+                    per_unit: outer.len(),
+                    cost: inner.cost(),
+                    ..Stage::inner(baker, inner, &work.alphas)?
+                },
+                sum: Some(Stage {
+                    kernel: Kernel::Sum,
+                    model: None,
+                    channels: 0,
+                    job: Job { columns: count(channels)?, nodes: count(outer.len())?, ..job },
+                    inputs: vec![baker.reals(outer)],
+                    per_unit: 1,
+                    cost: outer.len(),
+                }),
+            }),
+        }
+    }
+
+    /// Bytes between the stages for each unit.
+    pub fn raw_bytes_per_unit(&self) -> usize {
+        if self.sum.is_some() { self.inner.per_unit * RAW_BYTES } else { 0 }
+    }
+}
+
+impl Stage {
+    /// The kernel, counts and inputs of inner integrals.
+    fn inner(baker: &Baker, inner: &Inner, alphas: &[f64]) -> Result<Self> {
+        let (kernel, azimuths, nodes, inputs) = match inner {
+            Inner::Slopes { mus, azimuths, nodes, .. } => {
+                // What is so near the mirror that it is the mirror's in f64 is 0 to the kernel.
+                let alphas: Vec<_> =
+                    alphas.iter().map(|&alpha| if alpha < ALPHA_MIN_INTEGRAL { 0.0 } else { alpha }).collect();
+                let azimuths_f32: Vec<_> = azimuths.iter().map(|a| a.map(|x| x as f32)).collect();
+                let nodes_f32: Vec<_> = nodes.iter().map(|n| [n.x as f32, n.weight as f32]).collect();
+                let inputs =
+                    vec![baker.reals(&alphas), baker.reals(mus), baker.input(&azimuths_f32), baker.input(&nodes_f32)];
+                (Kernel::Slopes, azimuths.len() / mus.len(), nodes.len(), inputs)
+            }
+            Inner::Product { pairs, azimuths } => {
+                let inputs = vec![baker.reals(alphas), baker.pairs(pairs), baker.azimuths(azimuths)];
+                (Kernel::Product, azimuths.len(), 0, inputs)
+            }
+            Inner::Analytic { mus, .. } => (Kernel::Analytic, 0, 0, vec![baker.reals(alphas), baker.reals(mus)]),
+        };
+        let job = Job {
+            columns: count(inner.count())?,
+            azimuths: count(azimuths)?,
+            nodes: count(nodes)?,
+            ..Job::zeroed()
+        };
+        Ok(Self { kernel, model: None, channels: 0, job, inputs, per_unit: 1, cost: 1 })
+    }
+}
+
+impl Job {
+    fn new(lobe: &Lobe) -> Self {
+        let mut weights = [[0.0; 4]; 3];
+        for (row, [a, b]) in weights.iter_mut().zip(&lobe.weights) {
+            *row = [*a as f32, *b as f32, 0.0, 0.0];
+        }
+        Self { weights, ..Self::zeroed() }
+    }
+}
+
+impl Baker {
+    fn reals(&self, values: &[f64]) -> wgpu::Buffer {
+        self.input(&values.iter().map(|&x| x as f32).collect::<Vec<_>>())
+    }
+
+    fn pairs(&self, pairs: &[Pair]) -> wgpu::Buffer {
+        self.input(&pairs.iter().map(PairF32::from).collect::<Vec<_>>())
+    }
+
+    fn azimuths(&self, azimuths: &[Azimuth]) -> wgpu::Buffer {
+        self.input(&azimuths.iter().map(AzimuthF32::from).collect::<Vec<_>>())
+    }
+
+    fn input<T: Pod>(&self, items: &[T]) -> wgpu::Buffer {
+        self.init(bytemuck::cast_slice(items), wgpu::BufferUsages::STORAGE)
+    }
+}

@@ -1,0 +1,22 @@
+//! The diffuse lobe of glTF 2.0 metallic-roughness. Twin of `shaders/diffuse/gltf_diffuse.wgsl`.
+
+use crate::models::{Integral, Model, fresnel::schlick, part};
+use crate::pair::Half;
+use crate::reference;
+use std::f64::consts::FRAC_1_PI;
+
+pub(crate) static MODEL: Model = Model {
+    name: "gltf_diffuse",
+    summary: "glTF's diffuse lobe: f = albedo (1 − Fc)/π with Fc of the half vector",
+    source: "glTF 2.0 specification, Appendix B.3.5",
+    components: &["A"],
+    has_roughness: false,
+    rho_bound: 1.0,
+    parts: &[schlick::PART, part!("diffuse/gltf_diffuse")],
+    integral: Integral::Smooth,
+    lobe: |p, a, _| {
+        let h = Half::new(p, a);
+        [schlick::fresnel(h.c, h.one_minus_c)[0] * FRAC_1_PI, 0.0]
+    },
+    reference: Some(reference::GLTF_DIFFUSE),
+};

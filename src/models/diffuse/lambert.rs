@@ -1,0 +1,18 @@
+//! Lambert 1760. Twin of `shaders/diffuse/lambert.wgsl`.
+
+use crate::models::{Integral, Model, part};
+use crate::reference;
+use std::f64::consts::FRAC_1_PI;
+
+pub(crate) static MODEL: Model = Model {
+    name: "lambert",
+    summary: "ideal diffuse: f = albedo/π",
+    source: "Lambert, Photometria, 1760",
+    components: &["A"],
+    has_roughness: false,
+    rho_bound: 1.0,
+    parts: &[part!("diffuse/lambert")],
+    integral: Integral::Smooth,
+    lobe: |_, _, _| [FRAC_1_PI, 0.0],
+    reference: Some(reference::LAMBERT),
+};

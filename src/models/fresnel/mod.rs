@@ -1,0 +1,3 @@
+//! Fresnel reflectance.
+
+pub(crate) mod schlick;

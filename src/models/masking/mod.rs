@@ -1,0 +1,3 @@
+//! Masking and shadowing of microfacets.
+
+pub(crate) mod smith;

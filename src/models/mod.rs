@@ -1,0 +1,121 @@
+//! The models and the parts that they are made of.
+//!
+//! A part is one WGSL file and one Rust file of the same name: the Rust file is its twin, the same
+//! evaluation in f64, which bakes where there is no device. The *reference* of a part is not here:
+//! `reference/` has it, written from the paper and sharing nothing with this module.
+
+mod diffuse;
+mod fresnel;
+mod ggx;
+mod masking;
+mod mirror;
+mod ndf;
+
+use crate::error::{Error, Result};
+use crate::pair::{Azimuth, Pair};
+use crate::reference::Reference;
+
+/// A reflection model: f = a·A + b·B with weights that a material gives and components that the
+/// model evaluates, so that colours never enter a basis.
+pub struct Model {
+    /// The name in recipes, files and manifests.
+    pub name: &'static str,
+    /// One line for people.
+    pub summary: &'static str,
+    /// Author, year, equation.
+    pub source: &'static str,
+    /// The names of its components: `A` alone, or `A` and `B` where Fresnel splits it.
+    pub components: &'static [&'static str],
+    /// Whether it takes a roughness (α = roughness²).
+    pub has_roughness: bool,
+    /// The bound on ρ_dh = ∫ (A + B) cos θ dω that the model promises; 1 conserves energy.
+    pub rho_bound: f64,
+    /// Its shader, part by part, in order.
+    pub parts: &'static [Part],
+    /// How its hemispherical integrals are done.
+    pub integral: Integral,
+    /// (A, B) in f64, in the shader's own formulas: the evaluation of the CPU path. Of a delta, its
+    /// mean over a cell.
+    pub(crate) lobe: fn(&Pair, &Azimuth, alpha: f64) -> [f64; 2],
+    /// The independent f64 reference.
+    pub reference: Option<&'static dyn Reference>,
+}
+
+/// A file of WGSL.
+#[derive(Debug)]
+pub struct Part {
+    /// Its path below `shaders/`, without the extension.
+    pub name: &'static str,
+    /// Its text.
+    pub wgsl: &'static str,
+}
+
+/// How a model's hemispherical integrals are done by the `warped` rule.
+#[derive(Clone, Copy)]
+pub enum Integral {
+    /// In slopes of the microfacet normal, for lobes of any width.
+    Slopes(&'static Slopes),
+    /// Gauss–Legendre in θe, midpoints in δφ: for lobes as wide as the hemisphere.
+    Smooth,
+    /// In closed form: (A, B) of ρ(μ). Such a model is a delta and has no values.
+    Delta(fn(mu: f64, alpha: f64) -> [f64; 2]),
+}
+
+/// The f64 twin of a lobe's integrand in slopes.
+pub struct Slopes {
+    /// The end of the map at a horizon tan θm = t_max.
+    pub(crate) end: fn(t_max: f64, alpha: f64) -> f64,
+    /// The integrand at r, for an azimuth (c, t_max, 1/t_max).
+    pub(crate) integrand: fn(r: f64, azimuth: [f64; 3], mu_e: f64, alpha: f64) -> [f64; 2],
+    /// What α → 0 tends to.
+    pub(crate) mirror_limit: fn(mu_e: f64) -> [f64; 2],
+}
+
+/// The smallest α > 0 that has values: below it, f of both directions at grazing would leave f32.
+pub const ALPHA_MIN_VALUE: f64 = 1e-6;
+
+/// The smallest α whose integrals differ from the mirror's: at μ = 2⁻²⁴, the smallest there is,
+/// (α/μ)² = 2e-10.
+pub const ALPHA_MIN_INTEGRAL: f64 = 1e-12;
+
+/// The registry.
+pub static MODELS: [&Model; 4] =
+    [&diffuse::lambert::MODEL, &diffuse::gltf_diffuse::MODEL, &ggx::MODEL, &mirror::MODEL];
+
+/// The model of this name.
+pub fn find(name: &str) -> Result<&'static Model> {
+    MODELS.into_iter().find(|m| m.name == name).ok_or_else(|| {
+        let names: Vec<_> = MODELS.iter().map(|m| m.name).collect();
+        Error::input(format!("no model \"{name}\"; there are {}", names.join(", ")))
+    })
+}
+
+impl Model {
+    /// Whether this is a delta: no values, only integrals.
+    pub fn is_delta(&self) -> bool {
+        matches!(self.integral, Integral::Delta(_))
+    }
+}
+
+impl PartialEq for Model {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl std::fmt::Debug for Model {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+/// A [`Part`] from its path below `shaders/`.
+macro_rules! part {
+    ($name:literal) => {
+        $crate::models::Part {
+            name: $name,
+            wgsl: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $name, ".wgsl")),
+        }
+    };
+}
+use part;

@@ -1,0 +1,3 @@
+//! Distributions of microfacet normals.
+
+pub(crate) mod ggx;

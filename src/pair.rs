@@ -1,0 +1,114 @@
+//! Factors of a pair of directions, in f64: the twin of `shaders/pair.wgsl`.
+//!
+//! With the azimuth kept relative to the mirror direction, δ = φe − φi − π, everything that a BRDF
+//! of the half vector needs is a product or a sum of non-negative terms, so that the specular peak
+//! survives f32 (half vectors of unit vectors in f32 are off by 0.3 at α = 1e-3).
+
+use bytemuck::{Pod, Zeroable};
+
+/// The cosine at grazing: f diverges where both directions graze, and the half vector is 0 there.
+/// Every evaluation takes μ = max(cos θ, 2⁻²⁴).
+pub const MU_MIN: f64 = 1.0 / (1 << 24) as f64;
+
+/// What depends on θi and θe alone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pair {
+    /// (cos θi + cos θe)²
+    pub hz2: f64,
+    /// (sin θi − sin θe)²
+    pub dt2: f64,
+    /// sin θi sin θe
+    pub ss: f64,
+    /// sin²((θi − θe)/2)
+    pub sd: f64,
+    /// cos θi
+    pub mu_i: f64,
+    /// cos θe
+    pub mu_e: f64,
+    /// 1 / weight of this θe cell where it holds the mirror direction, else 0.
+    pub bin: f64,
+}
+
+/// What depends on δφ alone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Azimuth {
+    /// sin²(δ/2)
+    pub sin2: f64,
+    /// cos²(δ/2)
+    pub cos2: f64,
+    /// The weight of this δφ in an integral.
+    pub weight: f64,
+    /// 1 / weight of this δφ cell where it holds δφ = 0, else 0.
+    pub bin: f64,
+}
+
+/// What depends on all three: |ωi + ωe|² and 1 − ωi·ωm.
+pub(crate) struct Half {
+    pub ht2: f64,
+    pub h2: f64,
+    pub c: f64,
+    pub one_minus_c: f64,
+}
+
+impl Pair {
+    /// The factors of (θi, θe), rad.
+    pub fn new(theta_i: f64, theta_e: f64) -> Self {
+        let (theta_i, theta_e) = (off_horizon(theta_i), off_horizon(theta_e));
+        let (half_sum, half_difference) = (0.5 * (theta_i + theta_e), 0.5 * (theta_i - theta_e));
+        let hz = theta_i.cos() + theta_e.cos();
+        let dt = 2.0 * half_sum.cos() * half_difference.sin();
+        Self {
+            hz2: hz * hz,
+            dt2: dt * dt,
+            ss: theta_i.sin() * theta_e.sin(),
+            sd: half_difference.sin().powi(2),
+            mu_i: theta_i.cos(),
+            mu_e: theta_e.cos(),
+            bin: 0.0,
+        }
+    }
+}
+
+impl Azimuth {
+    /// The factors of δφ, rad.
+    pub fn new(delta_phi: f64) -> Self {
+        let (sin, cos) = (0.5 * delta_phi).sin_cos();
+        Self { sin2: sin * sin, cos2: cos * cos, weight: 0.0, bin: 0.0 }
+    }
+}
+
+impl Half {
+    pub(crate) fn new(p: &Pair, a: &Azimuth) -> Self {
+        let ht2 = p.dt2 + 4.0 * p.ss * a.sin2;
+        let h2 = ht2 + p.hz2;
+        let c = 0.5 * h2.sqrt();
+        Self { ht2, h2, c, one_minus_c: (p.sd + p.ss * a.cos2) / (1.0 + c) }
+    }
+}
+
+/// θ, or the angle whose cosine is [`MU_MIN`] if it is nearer to the horizon.
+fn off_horizon(theta: f64) -> f64 {
+    theta.min(MU_MIN.acos())
+}
+
+/// [`Pair`] as the shader lays it out.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct PairF32([f32; 8]);
+
+/// [`Azimuth`] as the shader lays it out.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct AzimuthF32([f32; 4]);
+
+impl From<&Pair> for PairF32 {
+    fn from(p: &Pair) -> Self {
+        Self([p.hz2, p.dt2, p.ss, p.sd, p.mu_i, p.mu_e, p.bin, 0.0].map(|x| x as f32))
+    }
+}
+
+impl From<&Azimuth> for AzimuthF32 {
+    fn from(a: &Azimuth) -> Self {
+        Self([a.sin2, a.cos2, a.weight, a.bin].map(|x| x as f32))
+    }
+}

@@ -1,0 +1,404 @@
+//! From what a scene says to what must be baked: bases, not colours; ranges that occur, not all.
+
+use super::{DEFAULT_TOLERANCE, Lobe, Rule, TablePlan};
+use crate::axis::{Axis, Mapping, Positions, Variable};
+use crate::error::{Error, Result};
+use crate::models::{self, ALPHA_MIN_VALUE, MODELS, Model};
+use crate::quantity::{self, BRDF, Evaluation, QUANTITIES, Quantity, RHO_DH};
+use crate::scene::{Distribution, LeftOut, Material, Scene, SubjectRequest, TableRequest, Weights};
+use serde::Serialize;
+use std::fmt;
+
+/// Everything that a scene requires, and what it does not.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// The bases that the scene's materials are sums of.
+    pub bases: Vec<Basis>,
+    /// The materials as weights on bases.
+    pub materials: Vec<MaterialPlan>,
+    /// The tables to bake.
+    pub tables: Vec<TablePlan>,
+    /// What is not baked, and why.
+    pub left_out: Vec<LeftOut>,
+    /// What the user should know before trusting the tables.
+    pub warnings: Vec<String>,
+}
+
+/// A basis: a model and the roughness that the scene's materials give it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Basis {
+    /// The model's name.
+    pub model: String,
+    /// [min, max] of its perceptual roughness.
+    pub roughness: Option<[f64; 2]>,
+}
+
+/// A material: f = Σ weights · basis.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MaterialPlan {
+    /// Its name.
+    pub name: String,
+    /// [min, max] of its perceptual roughness.
+    pub roughness: Option<[f64; 2]>,
+    /// [min, max] of its metalness, where the scene's format has one.
+    pub metallic: Option<[f64; 2]>,
+    /// The bases and their weights: numbers, or formulas where textures decide.
+    pub weights: Vec<BasisWeight>,
+    /// What ρ_dh of the material may reach; above 1 its format does not conserve energy.
+    pub rho_bound: f64,
+    /// The tables that evaluate it.
+    pub tables: Vec<String>,
+}
+
+/// What a material multiplies a basis's components with.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BasisWeight {
+    /// The model's name.
+    pub basis: String,
+    /// The weight of each component, by the component's name.
+    pub components: std::collections::BTreeMap<String, Weight>,
+}
+
+/// One weight.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Weight {
+    /// RGB.
+    Constant([f64; 3]),
+    /// A formula, in the words of the scene's format.
+    Textured(String),
+}
+
+/// What the user picks out of what the scene requires.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Selection {
+    /// Only this material, and the bases that it uses.
+    pub material: Option<String>,
+    /// Only this quantity.
+    pub quantity: Option<String>,
+    /// In place of the scene's tolerance.
+    pub tolerance: Option<f64>,
+}
+
+/// Resolution of the tables that nobody asked for by name.
+const ROUGHNESS: usize = 32;
+const MU: usize = 64;
+const THETA: usize = 64;
+/// θi on n nodes and θe on 2n − 1 put every mirror pair on the grid.
+const VALUE_GRID: [usize; 3] = [33, 65, 65];
+
+impl Plan {
+    /// What `scene` requires, as far as `selection` lets it.
+    ///
+    /// # Errors
+    /// When the selection names what is not there, or a requested table cannot be baked.
+    pub fn new(scene: &Scene, selection: &Selection) -> Result<Self> {
+        let quantity = selection.quantity.as_deref().map(quantity::find).transpose()?;
+        let tolerance = selection.tolerance.or(scene.tolerance).unwrap_or(DEFAULT_TOLERANCE);
+        let selected = |m: &&Material| selection.material.as_ref().is_none_or(|name| *name == m.name);
+        let materials: Vec<_> = scene.materials.iter().filter(selected).collect();
+        if let (Some(name), []) = (&selection.material, &materials[..]) {
+            let names: Vec<_> = scene.materials.iter().map(|m| m.name.as_str()).collect();
+            return Err(Error::input(format!(
+                "{}: no material \"{name}\"; there are {}",
+                scene.file.display(),
+                names.join(", ")
+            )));
+        }
+
+        let mut plan = Self {
+            bases: Vec::new(),
+            materials: Vec::new(),
+            tables: Vec::new(),
+            left_out: scene.left_out.clone(),
+            warnings: scene.warnings.clone(),
+        };
+        if scene.tables.is_empty() {
+            plan.require_defaults(&materials, tolerance)?;
+        } else {
+            for request in &scene.tables {
+                let wanted = match (&request.subject, &selection.material) {
+                    (SubjectRequest::Material(name), Some(only)) => name == only,
+                    (SubjectRequest::Basis { .. }, Some(_)) => false,
+                    (_, None) => true,
+                };
+                if wanted {
+                    let table = requested(request, scene, tolerance).map_err(|e| e.at(&request.place))?;
+                    plan.tables.push(table);
+                }
+            }
+        }
+        if let Some(only) = quantity {
+            plan.tables.retain(|table| table.quantity == only);
+            for other in QUANTITIES.into_iter().filter(|q| *q != only) {
+                plan.leave_out(other.name, "the selection asks for another quantity");
+            }
+        }
+        for request in &scene.tables {
+            if let SubjectRequest::Basis { model, .. } = &request.subject {
+                plan.require_basis(models::find(model)?, None);
+            }
+        }
+        plan.describe(&materials)?;
+        for model in MODELS {
+            if !plan.bases.iter().any(|basis| basis.model == model.name) {
+                plan.leave_out(model.name, "nothing in the scene uses it");
+            }
+        }
+        if plan.tables.is_empty() {
+            return Err(Error::input(format!(
+                "{}: nothing to bake; it has no material or table that the selection keeps",
+                scene.file.display()
+            )));
+        }
+        Ok(plan)
+    }
+
+    /// The default set: for each basis in use its split sum, ρ_dh and ρ_hh over the roughness that
+    /// occurs and its values at the range's ends and quartiles; RGB tables of constant materials.
+    fn require_defaults(&mut self, materials: &[&Material], tolerance: f64) -> Result<()> {
+        for model in MODELS {
+            let lobes = || materials.iter().flat_map(|m| &m.lobes).filter(|lobe| lobe.model == model.name);
+            if lobes().next().is_none() {
+                continue;
+            }
+            let range = Distribution::union(lobes().filter_map(|lobe| lobe.roughness.as_ref()));
+            for quantity in QUANTITIES {
+                let Some(axes) = self.default_axes(model.name, model, quantity, range.as_ref())? else { continue };
+                let name = format!("{}.{}", model.name, quantity.name);
+                self.tables.push(TablePlan::basis(name, quantity, model, None, axes)?.with_tolerance(tolerance));
+            }
+        }
+        for material in materials {
+            let lobes = match constant_lobes(material) {
+                Ok(lobes) => lobes,
+                Err(why) => {
+                    self.leave_out(format!("RGB tables of {}", material.name), why);
+                    continue;
+                }
+            };
+            for quantity in [&BRDF, &RHO_DH] {
+                let what = format!("{}.{}", material.name, quantity.name);
+                let delta = |lobe: &Lobe| lobe.model.is_delta() || lobe.model.has_roughness && is_mirror(lobe.roughness);
+                if quantity.evaluation == Evaluation::Value && lobes.iter().any(delta) {
+                    self.leave_out(what, "a lobe of it is a delta and has no values");
+                    continue;
+                }
+                let axes = natural_axes(quantity)?;
+                self.tables.push(material_table(what, quantity, material, lobes.clone(), axes)?.with_tolerance(tolerance));
+            }
+        }
+        Ok(())
+    }
+
+    /// The axes of a basis's default table; `None`, with the reason noted, where it has none.
+    fn default_axes(
+        &mut self,
+        subject: &str,
+        model: &Model,
+        quantity: &Quantity,
+        range: Option<&Distribution>,
+    ) -> Result<Option<Vec<Axis>>> {
+        let value = quantity.evaluation == Evaluation::Value;
+        if value && model.is_delta() {
+            self.leave_out(format!("{subject}.{}", quantity.name), "a delta has no values");
+            return Ok(None);
+        }
+        let mut axes = Vec::new();
+        if let Some(range) = range {
+            let (min, max) = (range.min(), range.max());
+            axes.push(if value {
+                let mut values: Vec<_> = [0.0, 0.25, 0.5, 0.75, 1.0].map(|q| range.quantile(q)).to_vec();
+                // The quantile at 0 is the least value with weight: the minimum.
+                values.dedup();
+                if values.iter().any(|&r| is_mirror(Some(r))) {
+                    values.retain(|&r| !is_mirror(Some(r)));
+                    self.leave_out(
+                        format!("{subject}.{} at roughness {min}", quantity.name),
+                        "the lobe is a delta there and has no values",
+                    );
+                }
+                if values.is_empty() {
+                    return Ok(None);
+                }
+                Axis::listed(Variable::Roughness, values)?
+            } else if range.is_constant() {
+                Axis::listed(Variable::Roughness, vec![min])?
+            } else {
+                Axis::new(Variable::Roughness, ROUGHNESS, [min, max], Positions::Nodes, Mapping::Linear)?
+            });
+        }
+        axes.extend(natural_axes(quantity)?);
+        Ok(Some(axes))
+    }
+
+    /// Notes the bases of the materials, and which tables evaluate each material.
+    fn describe(&mut self, materials: &[&Material]) -> Result<()> {
+        for material in materials {
+            let mut plan = MaterialPlan {
+                name: material.name.clone(),
+                roughness: Distribution::union(material.lobes.iter().filter_map(|l| l.roughness.as_ref()))
+                    .map(|d| [d.min(), d.max()]),
+                metallic: material.metallic,
+                weights: Vec::new(),
+                rho_bound: 0.0,
+                tables: Vec::new(),
+            };
+            for lobe in &material.lobes {
+                let model = models::find(&lobe.model)?;
+                self.require_basis(model, lobe.roughness.as_ref());
+                let weight = |k: usize| match &lobe.weights {
+                    Weights::Constant(weights) => Weight::Constant(weights[k]),
+                    Weights::Textured(formulas) => Weight::Textured(formulas[k].clone()),
+                };
+                let components = model.components.iter().enumerate().map(|(k, c)| (c.to_string(), weight(k)));
+                plan.weights.push(BasisWeight { basis: model.name.into(), components: components.collect() });
+                // Every weight of every format is at most 1: they multiply reflectances.
+                let largest = match &lobe.weights {
+                    Weights::Constant(weights) => weights.as_flattened().iter().copied().fold(0.0, f64::max),
+                    Weights::Textured(_) => 1.0,
+                };
+                plan.rho_bound += largest * model.rho_bound;
+            }
+            let serves = |t: &&TablePlan| {
+                t.subject == material.name || material.lobes.iter().any(|lobe| lobe.model == t.subject)
+            };
+            plan.tables = self.tables.iter().filter(serves).map(|t| t.name.clone()).collect();
+            self.materials.push(plan);
+        }
+        Ok(())
+    }
+
+    fn require_basis(&mut self, model: &Model, roughness: Option<&Distribution>) {
+        let at = self.bases.iter().position(|basis| basis.model == model.name).unwrap_or_else(|| {
+            self.bases.push(Basis { model: model.name.into(), roughness: None });
+            self.bases.len() - 1
+        });
+        if let Some(d) = roughness {
+            let [min, max] = self.bases[at].roughness.unwrap_or([f64::INFINITY, 0.0]);
+            self.bases[at].roughness = Some([min.min(d.min()), max.max(d.max())]);
+        }
+    }
+
+    fn leave_out(&mut self, what: impl Into<String>, why: impl Into<String>) {
+        self.left_out.push(LeftOut { what: what.into(), why: why.into() });
+    }
+}
+
+/// The natural axes of a quantity, at the default resolution.
+fn natural_axes(quantity: &Quantity) -> Result<Vec<Axis>> {
+    quantity.variables.iter().map(|&variable| natural_axis(quantity, variable)).collect()
+}
+
+fn natural_axis(quantity: &Quantity, variable: Variable) -> Result<Axis> {
+    let count = match (quantity.evaluation, variable) {
+        // √μ on nodes: bilinear look-ups are then eight times closer than on texel centres of μ.
+        (_, Variable::Mu) => {
+            return Axis::new(variable, MU, [0.0, 1.0], Positions::Nodes, Mapping::Sqrt);
+        }
+        (Evaluation::Value, Variable::ThetaI) => VALUE_GRID[0],
+        (Evaluation::Value, Variable::ThetaE) => VALUE_GRID[1],
+        (Evaluation::Value, Variable::DeltaPhi) => VALUE_GRID[2],
+        (_, Variable::Roughness) => ROUGHNESS,
+        _ => THETA,
+    };
+    Axis::natural(variable, count)
+}
+
+/// A table that a recipe asks for.
+fn requested(request: &TableRequest, scene: &Scene, tolerance: f64) -> Result<TablePlan> {
+    let quantity = quantity::find(&request.quantity)?;
+    let given = |variable| request.axes.iter().find(|axis| axis.variable == variable).cloned();
+    let mut axes: Vec<_> = given(Variable::Roughness).into_iter().collect();
+    for &variable in quantity.variables {
+        axes.push(given(variable).map_or_else(|| natural_axis(quantity, variable), Ok)?);
+    }
+    let name = |subject: &str| request.name.clone().unwrap_or_else(|| format!("{subject}.{}", quantity.name));
+    let table = match &request.subject {
+        SubjectRequest::Basis { model, roughness } => {
+            TablePlan::basis(name(model), quantity, models::find(model)?, *roughness, axes)?
+        }
+        SubjectRequest::Material(subject) => {
+            let material = scene
+                .materials
+                .iter()
+                .find(|m| m.name == *subject)
+                .ok_or_else(|| Error::input(format!("no material \"{subject}\"")))?;
+            let lobes = constant_lobes(material)
+                .map_err(|why| Error::input(format!("material \"{subject}\": {why}; tabulate its bases")))?;
+            material_table(name(subject), quantity, material, lobes, axes)?
+        }
+    };
+    let rule = request.grid.map_or(Rule::Warped, |[theta, phi]| Rule::Grid { theta, phi });
+    Ok(table.with_rule(rule)?.with_tolerance(request.tolerance.unwrap_or(tolerance)))
+}
+
+fn material_table(
+    name: String,
+    quantity: &'static Quantity,
+    material: &Material,
+    lobes: Vec<Lobe>,
+    axes: Vec<Axis>,
+) -> Result<TablePlan> {
+    TablePlan {
+        name,
+        quantity,
+        subject: material.name.clone(),
+        axes,
+        channels: ["R", "G", "B"].map(String::from).to_vec(),
+        lobes,
+        rule: Rule::Warped,
+        tolerance: DEFAULT_TOLERANCE,
+    }
+    .checked()
+}
+
+/// The lobes of a material that is the same everywhere; else why it is not.
+fn constant_lobes(material: &Material) -> Result<Vec<Lobe>, String> {
+    let lobe = |lobe: &crate::scene::MaterialLobe| {
+        let Weights::Constant([a, b]) = &lobe.weights else {
+            return Err("its weights are textured, so it has no single RGB table".to_string());
+        };
+        if lobe.roughness.as_ref().is_some_and(|d| !d.is_constant()) {
+            return Err("its roughness varies, so it has no single RGB table".to_string());
+        }
+        Ok(Lobe {
+            model: models::find(&lobe.model).map_err(|e| e.to_string())?,
+            roughness: lobe.roughness.as_ref().map(Distribution::min),
+            weights: (0..3).map(|c| [a[c], b[c]]).collect(),
+        })
+    };
+    material.lobes.iter().map(lobe).collect()
+}
+
+/// Whether a lobe of this roughness is the mirror's delta, as far as values go.
+fn is_mirror(roughness: Option<f64>) -> bool {
+    roughness.is_some_and(|r| r * r < ALPHA_MIN_VALUE)
+}
+
+impl fmt::Display for Plan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let range = |[a, b]: [f64; 2]| if a == b { format!("{a:.4}") } else { format!("{a:.4} … {b:.4}") };
+        writeln!(f, "materials")?;
+        for m in &self.materials {
+            let bases: Vec<_> = m.weights.iter().map(|w| w.basis.as_str()).collect();
+            write!(f, "  {}: {}", m.name, bases.join(" + "))?;
+            if let Some(roughness) = m.roughness {
+                write!(f, ", roughness {}", range(roughness))?;
+            }
+            if let Some(metallic) = m.metallic {
+                write!(f, ", metallic {}", range(metallic))?;
+            }
+            writeln!(f)?;
+        }
+        writeln!(f, "tables")?;
+        for table in &self.tables {
+            writeln!(f, "  {table}")?;
+        }
+        writeln!(f, "left out")?;
+        for LeftOut { what, why } in &self.left_out {
+            writeln!(f, "  {what}: {why}")?;
+        }
+        Ok(())
+    }
+}

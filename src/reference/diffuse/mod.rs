@@ -1,0 +1,4 @@
+//! Diffuse lobes.
+
+pub(super) mod gltf;
+pub(super) mod lambert;

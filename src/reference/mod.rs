@@ -1,0 +1,60 @@
+//! The f64 reference: every model by its textbook formula, every integral by adaptive quadrature.
+//!
+//! Tables that a device computed are measured against it, so it takes no line from the device's side and
+//! knows neither its buffers nor its rules. It is written to be checked against the papers first, and to be
+//! fast second. Where an integral changes variables, a test holds it to the definition, which does not.
+//!
+//! Accuracy, as the tests hold it: values to 1e-12 relative, integrals to 1e-9 absolute. Both directions of a
+//! value, and the fixed one of an integral, have a cosine of at least [`MIN_MU`].
+
+mod definition;
+mod diffuse;
+mod directions;
+mod fresnel;
+mod masking;
+mod microfacet;
+mod mirror;
+mod ndf;
+mod quadrature;
+
+#[cfg(test)]
+mod tests;
+
+pub use diffuse::{gltf::GLTF_DIFFUSE, lambert::LAMBERT};
+pub use directions::{Angles, MIN_MU};
+pub use microfacet::GGX;
+pub use mirror::MIRROR;
+
+/// The f64 reference of a model.
+///
+/// A model's BRDF is f = a·A + b·B, its integrals likewise; each function returns [A, B]. A is what F0
+/// weighs and B what F90 weighs; a model without Fresnel has B = 0. A model without roughness ignores
+/// `alpha`, whose domain is [0, 1]. An integral that did not converge is NaN.
+pub trait Reference: Sync {
+    /// f in sr⁻¹, without the cosine; `None` where it is a delta and has no value.
+    fn brdf(&self, angles: &Angles, alpha: f64) -> Option<[f64; 2]>;
+
+    /// ρ_dh = ∫ f cos θ dω over the hemisphere, at μ = cos θ ∈ [0, 1] of the fixed direction.
+    fn rho_dh(&self, mu: f64, alpha: f64) -> [f64; 2];
+
+    /// ρ_hh = 2 ∫ ρ_dh(μ) μ dμ over [0, 1].
+    fn rho_hh(&self, alpha: f64) -> [f64; 2] {
+        definition::rho_hh(|mu| self.rho_dh(mu, alpha), alpha)
+    }
+
+    /// The factors of a microfacet model; `None` for any other, and where [`Reference::brdf`] is `None`.
+    fn factors(&self, _angles: &Angles, _alpha: f64) -> Option<Factors> {
+        None
+    }
+}
+
+/// What a microfacet BRDF is made of: f = F·D·G2 / (4 μi μe), F = F0 (1 − Fc) + F90 Fc.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Factors {
+    /// D(ωm), sr⁻¹: the density of microfacet normals.
+    pub d: f64,
+    /// G2(ωi, ωe): the share of microfacets that both directions see.
+    pub g2: f64,
+    /// Fc: the Fresnel term's weight of F90.
+    pub fc: f64,
+}

@@ -1,0 +1,121 @@
+//! What a scene or a recipe asks for: materials, the ranges that their parameters really take, and
+//! tables asked for by name. Knows nothing of GPUs, rules or resolutions.
+
+mod distribution;
+#[cfg(feature = "scene")]
+mod gltf;
+#[cfg(feature = "scene")]
+mod recipe;
+
+pub use distribution::Distribution;
+
+use crate::axis::Axis;
+use crate::error::{Error, Result};
+use std::path::{Path, PathBuf};
+
+/// Everything that a scene file or recipe says about reflection.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Scene {
+    /// The file it came from.
+    pub file: PathBuf,
+    /// The materials that the scene uses, in the order of the file.
+    pub materials: Vec<Material>,
+    /// Tables that a recipe asks for by name; a scene asks for none and gets the default set.
+    pub tables: Vec<TableRequest>,
+    /// The recipe's tolerance, if it names one.
+    pub tolerance: Option<f64>,
+    /// What is in the file and was not used, and why.
+    pub left_out: Vec<LeftOut>,
+    /// What the user should know before trusting the tables.
+    pub warnings: Vec<String>,
+}
+
+/// Something that was not baked, and the reason.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct LeftOut {
+    /// What.
+    pub what: String,
+    /// Why.
+    pub why: String,
+}
+
+/// A material: a sum of weighted lobes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// Unique in its scene.
+    pub name: String,
+    /// f = Σ of these.
+    pub lobes: Vec<MaterialLobe>,
+    /// The metalness that the material takes, [min, max], where the scene's format has one.
+    pub metallic: Option<[f64; 2]>,
+}
+
+/// One lobe of a material: a model and the weights of its components.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MaterialLobe {
+    /// The model's name in the registry: `lambert`, `ggx`, …
+    pub model: String,
+    /// Perceptual roughness (α = roughness²); `None` for a model without roughness.
+    pub roughness: Option<Distribution>,
+    /// The weights of the model's components.
+    pub weights: Weights,
+}
+
+/// How a material weighs the components (A, B) of a model.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Weights {
+    /// f = a·A + b·B with RGB weights [a, b].
+    Constant([[f64; 3]; 2]),
+    /// The weights come from textures: the formulas of a and b, in the words of the scene's format.
+    Textured([String; 2]),
+}
+
+/// A table that a recipe asks for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TableRequest {
+    /// The table's name; `None`: made of the subject and the quantity.
+    pub name: Option<String>,
+    /// The quantity's name in the registry: `brdf`, `rho_dh`, …
+    pub quantity: String,
+    /// Of what.
+    pub subject: SubjectRequest,
+    /// The axes that the recipe names; the plan adds the natural ones that are missing.
+    pub axes: Vec<Axis>,
+    /// The integration rule; `None`: the plan's choice.
+    pub grid: Option<[usize; 2]>,
+    /// This table's tolerance, in place of the recipe's.
+    pub tolerance: Option<f64>,
+    /// Where the request stands: "recipe.toml: line 7", for messages about it.
+    pub place: String,
+}
+
+/// The subject of a requested table.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SubjectRequest {
+    /// A material of this recipe, by name.
+    Material(String),
+    /// A basis: one model with unit weights, at this roughness, or over a roughness axis.
+    Basis {
+        /// The model's name.
+        model: String,
+        /// Perceptual roughness, where the table has no roughness axis.
+        roughness: Option<f64>,
+    },
+}
+
+/// Reads a scene (`.gltf`, `.glb`) or a recipe (`.toml`).
+///
+/// # Errors
+/// When the file cannot be read or is not what its name says.
+#[cfg(feature = "scene")]
+pub fn read(path: &Path) -> Result<Scene> {
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_lowercase();
+    match extension.as_str() {
+        "gltf" | "glb" => gltf::read(path),
+        "toml" => recipe::read(path),
+        _ => Err(Error::input(format!(
+            "{}: not a scene that gonio reads; give a .gltf, a .glb or a recipe .toml",
+            path.display()
+        ))),
+    }
+}

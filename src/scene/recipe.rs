@@ -1,0 +1,290 @@
+//! Recipes: materials and tables written by hand, in TOML. The README documents the format.
+
+mod document;
+
+use super::{Distribution, Material, MaterialLobe, Scene, SubjectRequest, TableRequest, Weights};
+use crate::axis::{Axis, Mapping, Positions, Variable};
+use crate::error::{Error, Result};
+use crate::models::MODELS;
+use crate::quantity::QUANTITIES;
+use document::{Document, Fields, Item};
+use std::collections::HashSet;
+use std::path::Path;
+
+/// Tables are not better than f32, and a tolerance above 1 promises nothing.
+const TOLERANCES: [f64; 2] = [1e-12, 1.0];
+
+/// The longest side of a `grid`.
+const MAX_GRID: usize = 1 << 16;
+
+/// Reads a recipe.
+pub(super) fn read(path: &Path) -> Result<Scene> {
+    let bytes = std::fs::read(path).map_err(Error::io("read", path))?;
+    let document = Document::new(path, &bytes)?;
+    let table = document.parse()?;
+    let root = document.root(&table).only(&["tolerance", "materials", "tables"])?;
+
+    let tolerance = root.get("tolerance").map(|item| item.number_in(TOLERANCES)).transpose()?;
+    let materials = match root.get("materials") {
+        None => Vec::new(),
+        Some(item) => item.entries()?.into_iter().map(material).collect::<Result<_>>()?,
+    };
+    let tables = match root.get("tables") {
+        None => Vec::new(),
+        Some(item) => {
+            item.items()?.into_iter().map(|t| table_request(t, &materials)).collect::<Result<_>>()?
+        }
+    };
+    if materials.is_empty() && tables.is_empty() {
+        return Err(Error::input(format!(
+            "{}: it asks for nothing; give a [materials.NAME] or a [[tables]]",
+            path.display()
+        )));
+    }
+    check_names(&tables)?;
+    Ok(Scene { file: path.to_owned(), materials, tables, tolerance, ..Scene::default() })
+}
+
+/// `[materials.NAME]`
+fn material(item: Item) -> Result<Material> {
+    let name = item.name().to_owned();
+    if name.trim().is_empty() || name.contains(char::is_control) {
+        return Err(item.refuse("a material needs a name that can be printed"));
+    }
+    let lobes = item.table(&["lobes"])?.require("lobes")?;
+    let items = lobes.items()?;
+    if items.is_empty() {
+        return Err(lobes.refuse("the list is empty; give at least one { model = …, … }"));
+    }
+    Ok(Material { name, lobes: items.into_iter().map(lobe).collect::<Result<_>>()?, metallic: None })
+}
+
+/// `{ model = "ggx", roughness = 0.3, f0 = [1.0, 0.78, 0.34] }`
+fn lobe(item: Item) -> Result<MaterialLobe> {
+    let model = model(item.any_table()?.require("model")?)?;
+    let mut keys = vec!["model"];
+    keys.extend(if model.has_roughness { &["roughness", "alpha"][..] } else { &[] });
+    keys.extend(colors(model.name).iter().map(|&(key, _)| key));
+    let fields = item.table(&keys)?;
+
+    let roughness = match (model.has_roughness, roughness(&fields)?) {
+        (true, None) => return Err(fields.refuse("give its roughness or its alpha")),
+        (_, roughness) => roughness,
+    };
+    let mut weights = [[0.0; 3]; 2];
+    for (weight, &(key, default)) in weights.iter_mut().zip(colors(model.name)) {
+        *weight = match (fields.get(key), default) {
+            (Some(item), _) => color(item)?,
+            (None, Some(value)) => [value; 3],
+            (None, None) => return Err(fields.refuse(&format!("give its {key}"))),
+        };
+    }
+    Ok(MaterialLobe { model: model.name.into(), roughness, weights: Weights::Constant(weights) })
+}
+
+/// The weights of a model's components A and B, as recipes call them, with their defaults: a diffuse
+/// lobe is albedo · A, a specular one f0 · A + f90 · B.
+fn colors(model: &str) -> &'static [(&'static str, Option<f64>)] {
+    match model {
+        "lambert" | "gltf_diffuse" => &[("albedo", None)],
+        "mirror" => &[("f0", Some(1.0)), ("f90", Some(1.0))],
+        _ => &[("f0", Some(0.04)), ("f90", Some(1.0))],
+    }
+}
+
+/// A colour in [0, 1]: one number, or three.
+fn color(item: Item) -> Result<[f64; 3]> {
+    if !item.is_array() {
+        return Ok([item.number_in([0.0, 1.0])?; 3]);
+    }
+    let items = item.items()?;
+    let [r, g, b] = items[..] else {
+        return Err(item.refuse(&format!("{} numbers; give one, or three for R, G, B", items.len())));
+    };
+    Ok([r.number_in([0.0, 1.0])?, g.number_in([0.0, 1.0])?, b.number_in([0.0, 1.0])?])
+}
+
+/// `roughness = r`, or `alpha = r²` in its place; `roughness = [a, b]` is a material that varies.
+fn roughness(fields: &Fields) -> Result<Option<Distribution>> {
+    match (fields.get("roughness"), fields.get("alpha")) {
+        (Some(_), Some(alpha)) => {
+            Err(alpha.refuse("roughness is given too (alpha = roughness²); keep one of them"))
+        }
+        (Some(item), None) if item.is_array() => {
+            let [a, b] = pair(item)?;
+            let [min, max] = [a.number_in([0.0, 1.0])?, b.number_in([0.0, 1.0])?];
+            if min > max {
+                return Err(item.refuse(&format!("the range [{min}, {max}] is reversed")));
+            }
+            Ok(Some(Distribution::uniform(min, max)))
+        }
+        (Some(item), None) => Ok(Some(Distribution::constant(item.number_in([0.0, 1.0])?))),
+        (None, Some(item)) => Ok(Some(Distribution::constant(item.number_in([0.0, 1.0])?.sqrt()))),
+        (None, None) => Ok(None),
+    }
+}
+
+fn pair(item: Item) -> Result<[Item; 2]> {
+    let items = item.items()?;
+    items[..].try_into().map_err(|_| item.refuse(&format!("{} values; give two: [a, b]", items.len())))
+}
+
+/// `[[tables]]`
+fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
+    let fields = item.table(&[
+        "name",
+        "quantity",
+        "material",
+        "model",
+        "roughness",
+        "alpha",
+        "axes",
+        "grid",
+        "tolerance",
+    ])?;
+    let name = fields.get("name").map(table_name).transpose()?;
+    let quantity = fields.require("quantity")?;
+    let quantity = quantity.one_of(QUANTITIES.iter().map(|q| (q.name, q)))?;
+    let (subject, varies) = subject(&fields, materials)?;
+
+    let mut axes = Vec::new();
+    if let Some(item) = fields.get("axes") {
+        let variables = quantity.variables.iter().copied().chain([Variable::Roughness]);
+        let variables: Vec<_> = variables.map(|v| (v.name(), v)).collect();
+        for axis_item in item.entries()? {
+            let variable = axis_item.key_one_of(variables.iter().copied())?;
+            if variable == Variable::Roughness {
+                varies.map_err(|why| axis_item.refuse(why))?;
+            }
+            axes.push(axis(axis_item, variable)?);
+        }
+    }
+    Ok(TableRequest {
+        name,
+        quantity: quantity.name.into(),
+        subject,
+        axes,
+        grid: fields.get("grid").map(grid).transpose()?,
+        tolerance: fields.get("tolerance").map(|t| t.number_in(TOLERANCES)).transpose()?,
+        place: item.place(),
+    })
+}
+
+/// What the table is of, and whether it can have a roughness axis; if not, why.
+fn subject(fields: &Fields, materials: &[Material]) -> Result<(SubjectRequest, Result<(), &'static str>)> {
+    const FIXED: &str = "the table has one roughness already; leave that or this axis away";
+    const NONE: &str = "the table's model has no roughness; leave this axis away";
+    let has = |material: &Material, test: fn(&Distribution) -> bool| {
+        material.lobes.iter().filter_map(|lobe| lobe.roughness.as_ref()).any(test)
+    };
+    match (fields.get("material"), fields.get("model")) {
+        (Some(item), None) => {
+            let material = item.one_of(materials.iter().map(|m| (m.name.as_str(), m)))?;
+            for key in ["roughness", "alpha"] {
+                if let Some(item) = fields.get(key) {
+                    return Err(item.refuse("a material has its own; leave this away, or give a model"));
+                }
+            }
+            let varies = match material {
+                m if has(m, |roughness| !roughness.is_constant()) => Ok(()),
+                m if has(m, |_| true) => Err("the material's roughness is one number; give it a range there"),
+                _ => Err("the material has no roughness; leave this axis away"),
+            };
+            Ok((SubjectRequest::Material(material.name.clone()), varies))
+        }
+        (None, Some(item)) => {
+            let model = model(item)?;
+            let given = fields.get("roughness").or(fields.get("alpha"));
+            if let (false, Some(item)) = (model.has_roughness, given) {
+                return Err(item.refuse(&format!("{} has no roughness; leave this away", model.name)));
+            }
+            let roughness = match (roughness(fields)?, given) {
+                (Some(range), Some(item)) if !range.is_constant() => {
+                    return Err(
+                        item.refuse("a table has one roughness; for a range give it a roughness axis")
+                    );
+                }
+                (roughness, _) => roughness.map(|r| r.min()),
+            };
+            let varies = match (model.has_roughness, roughness) {
+                (false, _) => Err(NONE),
+                (true, Some(_)) => Err(FIXED),
+                (true, None) => Ok(()),
+            };
+            Ok((SubjectRequest::Basis { model: model.name.into(), roughness }, varies))
+        }
+        (Some(_), Some(item)) => Err(item.refuse("a table is of a material or of a model; keep one of them")),
+        (None, None) => Err(fields.refuse("say of what: material = \"NAME\" or model = \"NAME\"")),
+    }
+}
+
+fn model(item: Item) -> Result<&'static crate::models::Model> {
+    item.one_of(MODELS.iter().map(|&model| (model.name, model)))
+}
+
+/// Table names are names of files.
+fn table_name(item: Item) -> Result<String> {
+    let name = item.text()?;
+    let fits = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+    if name.is_empty() || name.starts_with('.') || name.len() > 100 || !name.chars().all(fits) {
+        return Err(item.refuse("it names files: give 1 to 100 of A–Z a–z 0–9 - _ . and no dot in front"));
+    }
+    Ok(name.into())
+}
+
+/// No two tables of one name; also none that differ by case alone, which some file systems ignore.
+fn check_names(tables: &[TableRequest]) -> Result<()> {
+    let mut taken = HashSet::new();
+    for table in tables {
+        if let Some(name) = &table.name
+            && !taken.insert(name.to_ascii_lowercase())
+        {
+            return Err(Error::input(format!(
+                "{}: another table is named {name} too; give each a name of its own",
+                table.place
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// `grid = [n_theta, n_phi]`
+fn grid(item: Item) -> Result<[usize; 2]> {
+    let [theta, phi] = pair(item)?;
+    Ok([theta.count(MAX_GRID)?, phi.count(MAX_GRID)?])
+}
+
+/// A count, `{ count, range, positions, mapping }`, or `{ values }`.
+fn axis(item: Item, variable: Variable) -> Result<Axis> {
+    let at = |error: Error| error.at(item.place());
+    if !item.is_table() {
+        return Axis::natural(variable, item.count(usize::MAX)?).map_err(at);
+    }
+    let fields = item.table(&["count", "range", "positions", "mapping", "values"])?;
+    if let Some(values) = fields.get("values") {
+        for key in ["count", "range", "positions", "mapping"] {
+            if let Some(other) = fields.get(key) {
+                return Err(other.refuse("values are listed already; leave this away"));
+            }
+        }
+        let values = values.items()?.into_iter().map(|value| value.number()).collect::<Result<_>>()?;
+        return Axis::listed(variable, values).map_err(at);
+    }
+    let count = fields.require("count")?.count(usize::MAX)?;
+    let range = match fields.get("range") {
+        None => variable.natural_range(),
+        Some(item) => {
+            let [a, b] = pair(item)?;
+            [a.number()?, b.number()?]
+        }
+    };
+    let positions = match fields.get("positions") {
+        None => variable.natural_positions(),
+        Some(item) => item.one_of([("centers", Positions::Centers), ("nodes", Positions::Nodes)])?,
+    };
+    let mapping = match fields.get("mapping") {
+        None => Mapping::Linear,
+        Some(item) => item.one_of([("linear", Mapping::Linear), ("sqrt", Mapping::Sqrt)])?,
+    };
+    Axis::new(variable, count, range, positions, mapping).map_err(at)
+}

@@ -1,0 +1,208 @@
+//! What one lobe of one table asks of an evaluator: axes turned into factors, nodes and weights, all
+//! in f64. The device gets them rounded to f32, the CPU path as they are.
+
+use crate::axis::Variable;
+use crate::models::{Integral, Slopes};
+use crate::pair::{Azimuth, MU_MIN, Pair};
+use crate::plan::{Lobe, Rule, TablePlan};
+use crate::quadrature::{Node, gauss_legendre, midpoint};
+use crate::quantity::Evaluation;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// The work of one lobe.
+pub(crate) struct Work {
+    /// α along the table's slowest axis.
+    pub alphas: Vec<f64>,
+    pub kind: WorkKind,
+}
+
+pub(crate) enum WorkKind {
+    /// A row of values for each (α, pair): one value an azimuth.
+    Values { pairs: Vec<Pair>, azimuths: Vec<Azimuth> },
+    /// For each (α, direction, outer node) a raw integral; a texel is the sum of its outer nodes.
+    Integrals { inner: Inner, outer: Vec<f64> },
+}
+
+/// The inner integrals: one result for each (α, k), k counting directions and outer nodes.
+pub(crate) enum Inner {
+    /// In slopes: for each μ, `azimuths` entries of (c, t_max, 1/t_max, weight).
+    Slopes { slopes: &'static Slopes, mus: Vec<f64>, azimuths: Vec<[f64; 4]>, nodes: Vec<Node> },
+    /// Over δφ, for each pair of θ.
+    Product { pairs: Vec<Pair>, azimuths: Vec<Azimuth> },
+    /// In closed form, for each μ.
+    Analytic { directional: fn(f64, f64) -> [f64; 2], mus: Vec<f64> },
+}
+
+/// Nodes of the warped rule. They hold 6e-7 over α ∈ [1e-12, 1] and μ ∈ [2⁻²⁴, 1] in f32, which is
+/// f32's own floor; tests/convergence.rs shows it.
+const SLOPE_NODES: usize = 40;
+/// Azimuths of ωm on ωe's side, and on the other.
+const SLOPE_AZIMUTHS: [usize; 2] = [40, 24];
+/// θe and δφ of lobes as wide as the hemisphere.
+const SMOOTH_NODES: [usize; 2] = [48, 64];
+/// μ of ρ_hh, in √μ.
+const MEAN_NODES: usize = 40;
+
+impl Work {
+    /// The work of `lobe` in `table`.
+    pub fn new(table: &TablePlan, lobe: &Lobe) -> Self {
+        let alphas = if lobe.model.has_roughness { table.alphas(lobe) } else { vec![0.0; table.alphas(lobe).len()] };
+        let kind = match table.quantity.evaluation {
+            Evaluation::Value => values(table),
+            Evaluation::Directional => integrals(table, lobe, &directions(table), &[1.0]),
+            Evaluation::Hemispherical => {
+                // ρ_hh = ∫ ρ 2μ dμ with μ = u²: ρ turns at μ ≈ α, where u has nodes to spare.
+                let nodes = gauss_legendre(MEAN_NODES);
+                let thetas: Vec<_> = nodes.iter().map(|node| (node.x * node.x).acos()).collect();
+                let weights: Vec<_> = nodes.iter().map(|n| 4.0 * n.x.powi(3) * n.weight).collect();
+                integrals(table, lobe, &thetas, &weights)
+            }
+        };
+        Self { alphas, kind }
+    }
+
+    /// Evaluations of f or of an integrand, all in all.
+    pub fn evaluations(&self) -> u64 {
+        let per_alpha = match &self.kind {
+            WorkKind::Values { pairs, azimuths } => pairs.len() * azimuths.len(),
+            WorkKind::Integrals { inner, .. } => inner.count() * inner.cost(),
+        };
+        (self.alphas.len() * per_alpha) as u64
+    }
+}
+
+impl Inner {
+    /// Results for each α.
+    pub fn count(&self) -> usize {
+        match self {
+            Self::Slopes { mus, .. } | Self::Analytic { mus, .. } => mus.len(),
+            Self::Product { pairs, .. } => pairs.len(),
+        }
+    }
+
+    /// Evaluations for each result.
+    pub fn cost(&self) -> usize {
+        match self {
+            Self::Slopes { mus, azimuths, nodes, .. } => azimuths.len() / mus.len() * nodes.len(),
+            Self::Product { azimuths, .. } => azimuths.len(),
+            Self::Analytic { .. } => 1,
+        }
+    }
+}
+
+/// θ of the fixed direction along the table's last axis.
+fn directions(table: &TablePlan) -> Vec<f64> {
+    let axis = &table.axes[table.axes.len() - 1];
+    match axis.variable {
+        Variable::Mu => axis.values.iter().map(|mu| mu.acos()).collect(),
+        _ => axis.values.clone(),
+    }
+}
+
+fn values(table: &TablePlan) -> WorkKind {
+    let of = |variable| table.axis(variable).map_or(&[][..], |axis| &axis.values);
+    let (theta_i, theta_e) = (of(Variable::ThetaI), of(Variable::ThetaE));
+    let pairs = theta_i.iter().flat_map(|&i| theta_e.iter().map(move |&e| Pair::new(i, e))).collect();
+    WorkKind::Values { pairs, azimuths: of(Variable::DeltaPhi).iter().map(|&d| Azimuth::new(d)).collect() }
+}
+
+/// Integrals over one direction for each fixed θ, times `weights`, which run over the fixed ones
+/// where a texel sums several (ρ_hh), and are just 1 where each is a texel.
+fn integrals(table: &TablePlan, lobe: &Lobe, thetas: &[f64], weights: &[f64]) -> WorkKind {
+    let mus = || thetas.iter().map(|theta| theta.cos().max(MU_MIN)).collect::<Vec<_>>();
+    let smooth = |grid: Vec<Cell>, azimuths: Vec<Azimuth>| {
+        let pairs = thetas.iter().flat_map(|&theta| grid.iter().map(move |cell| cell.pair(theta))).collect();
+        let outer = weights.iter().flat_map(|w| grid.iter().map(move |cell| w * cell.weight)).collect();
+        WorkKind::Integrals { inner: Inner::Product { pairs, azimuths }, outer }
+    };
+    match (table.rule, lobe.model.integral) {
+        (Rule::Grid { theta, phi }, _) => smooth(grid_cells(theta), grid_azimuths(phi)),
+        (Rule::Warped, Integral::Smooth) => smooth(gauss_cells(SMOOTH_NODES[0]), grid_azimuths(2 * SMOOTH_NODES[1])),
+        (Rule::Warped, Integral::Slopes(slopes)) => {
+            let mus = mus();
+            let azimuths = mus.iter().flat_map(|&mu| slope_azimuths(mu)).collect();
+            let nodes = gauss_legendre(SLOPE_NODES);
+            WorkKind::Integrals { inner: Inner::Slopes { slopes, mus, azimuths, nodes }, outer: weights.to_vec() }
+        }
+        (Rule::Warped, Integral::Delta(directional)) => {
+            WorkKind::Integrals { inner: Inner::Analytic { directional, mus: mus() }, outer: weights.to_vec() }
+        }
+    }
+}
+
+/// A node in θe, and where its cell lies if it has one.
+struct Cell {
+    theta: f64,
+    weight: f64,
+    edges: Option<[f64; 2]>,
+}
+
+impl Cell {
+    fn pair(&self, theta_i: f64) -> Pair {
+        // The last cell holds its upper edge, the horizon.
+        let holds = |[low, high]: [f64; 2]| low <= theta_i && (theta_i < high || high == FRAC_PI_2);
+        let bin = if self.edges.is_some_and(holds) { 1.0 / self.weight } else { 0.0 };
+        Pair { bin, ..Pair::new(theta_i, self.theta) }
+    }
+}
+
+/// Midpoints in θ, each times ∫ cos θ sin θ dθ = (sin²θ₁ − sin²θ₀)/2 over its cell: with Δφ that is
+/// the cell's projected solid angle, exactly.
+fn grid_cells(n: usize) -> Vec<Cell> {
+    let edge = |k: usize| if k == n { FRAC_PI_2 } else { FRAC_PI_2 * k as f64 / n as f64 };
+    midpoint(n)
+        .iter()
+        .enumerate()
+        .map(|(k, node)| {
+            let edges = [edge(k), edge(k + 1)];
+            // sin²b − sin²a = sin(b + a) sin(b − a)
+            let weight = 0.5 * (edges[1] + edges[0]).sin() * (edges[1] - edges[0]).sin();
+            Cell { theta: FRAC_PI_2 * node.x, weight, edges: Some(edges) }
+        })
+        .collect()
+}
+
+/// Gauss–Legendre in θ, with cos θ sin θ.
+fn gauss_cells(n: usize) -> Vec<Cell> {
+    gauss_legendre(n)
+        .iter()
+        .map(|node| {
+            let theta = FRAC_PI_2 * node.x;
+            Cell { theta, weight: FRAC_PI_2 * node.weight * theta.sin() * theta.cos(), edges: None }
+        })
+        .collect()
+}
+
+/// `n` midpoints in φ ∈ [0, 2π), of which the half in δφ ∈ [0, π] is kept with twice the weight: the
+/// models so far do not tell left from right. The first cell holds δφ = 0, with its mirror image.
+fn grid_azimuths(n: usize) -> Vec<Azimuth> {
+    midpoint(n / 2)
+        .iter()
+        .enumerate()
+        .map(|(k, node)| {
+            let weight = 2.0 * PI * node.weight;
+            Azimuth { weight, bin: if k == 0 { 1.0 / weight } else { 0.0 }, ..Azimuth::new(PI * node.x) }
+        })
+        .collect()
+}
+
+/// Azimuths φ = π/2 ∓ d sinh u of ωm from ωe's, u ∈ [0, asinh(π/2d)]: the horizon turns within μ of
+/// φ = π/2. c = tan θe cos φ; t_max = c + √(c² + 1), without cancellation where c < 0.
+fn slope_azimuths(mu: f64) -> Vec<[f64; 4]> {
+    /// Below it nothing is gained: the turn is then narrower than what it contributes.
+    const D_MIN: f64 = 1e-3;
+    let tan = ((1.0 - mu) * (1.0 + mu)).sqrt() / mu;
+    let d = mu.max(D_MIN);
+    let u_max = (FRAC_PI_2 / d).asinh();
+    let side = |n: usize, sign: f64| {
+        gauss_legendre(n).into_iter().map(move |node| {
+            let u = u_max * node.x;
+            let c = sign * tan * (d * u.sinh()).sin();
+            let root = c.hypot(1.0);
+            let t_max = if c > 0.0 { c + root } else { 1.0 / (root - c) };
+            // dφ/π: both halves of the azimuth, over 2π
+            [c, t_max, 1.0 / t_max, node.weight * u_max * d * u.cosh() / PI]
+        })
+    };
+    side(SLOPE_AZIMUTHS[0], 1.0).chain(side(SLOPE_AZIMUTHS[1], -1.0)).collect()
+}

@@ -1,0 +1,674 @@
+//! Reading scenes and recipes: the ranges are those of the file, what is missing widens them, and
+//! whatever is wrong gives an error that names the file and the place.
+
+#![cfg(feature = "scene")]
+
+#[path = "../examples/make_demo_scene.rs"]
+#[allow(dead_code, missing_docs)]
+mod make_demo_scene;
+
+use gonio::scene::{Distribution, Material, Scene, SubjectRequest, Weights, read};
+use make_demo_scene::ROUGHNESS;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+// ---- glTF: what is in the file is what is found -------------------------------------------------
+
+#[test]
+fn the_demo_scene_takes_what_its_generator_put_in() {
+    let folder = demo();
+    let scene = read(&folder.path().join("demo.gltf")).unwrap();
+    assert_eq!(names(&scene), ["worn paint", "gold", "clay"]);
+    assert_eq!(scene.warnings, [""; 0]);
+    let [paint, gold, clay] = &scene.materials[..] else { unreachable!() };
+
+    let roughness = ggx(paint);
+    assert_eq!([roughness.min(), roughness.max()], ROUGHNESS);
+    assert!(ROUGHNESS[0] < roughness.quantile(0.25) && roughness.quantile(0.75) < ROUGHNESS[1]);
+    assert_eq!(paint.metallic, Some([0.0, 1.0]));
+    assert_eq!(models(paint), ["gltf_diffuse", "ggx"]);
+    let words = Weights::Textured(["0.96 (1 − metallic) base_color".into(), "0".into()]);
+    assert_eq!(paint.lobes[0].weights, words);
+
+    assert_eq!((models(gold), ggx(gold)), (vec!["ggx"], &Distribution::constant(ROUGHNESS[0])));
+    assert_eq!(gold.lobes[0].weights, Weights::Constant([[1.0, 0.78, 0.34], [1.0; 3]]));
+    assert!(scene.left_out.iter().any(|l| l.what.contains("gold") && l.what.contains("gltf_diffuse")));
+
+    assert_eq!(models(clay), ["gltf_diffuse", "ggx"]);
+    let diffuse = [0.55, 0.27, 0.18].map(|c| 0.96 * c);
+    assert_eq!(clay.lobes[0].weights, Weights::Constant([diffuse, [0.0; 3]]));
+    assert_eq!(clay.lobes[1].weights, Weights::Constant([[0.04; 3], [1.0; 3]]));
+}
+
+#[test]
+fn the_committed_demo_is_what_its_generator_makes() {
+    let folder = demo();
+    let committed = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/demo/demo.gltf");
+    let made = read(&folder.path().join("demo.gltf")).unwrap();
+    assert_eq!(read(&committed).unwrap().materials, made.materials, "run examples/make_demo_scene.rs");
+}
+
+#[test]
+fn geometry_is_not_needed() {
+    let folder = demo();
+    let path = folder.path().join("demo.gltf");
+    let before = read(&path).unwrap();
+    std::fs::remove_file(folder.path().join("demo.bin")).unwrap();
+    assert_eq!(read(&path).unwrap(), before);
+}
+
+/// 2 × 1 texels, written by another encoder: G = 51, 153 and B = 0, 204.
+const PNG: [u8; 72] = [
+    137, 80, 78, 71, 13, 10, 26, 10, 0, 0, 0, 13, 73, 72, 68, 82, 0, 0, 0, 2, 0, 0, 0, 1, 8, 2, 0, 0, 0, 123,
+    64, 232, 221, 0, 0, 0, 15, 73, 68, 65, 84, 120, 218, 99, 224, 52, 102, 224, 156, 121, 6, 0, 3, 85, 1,
+    171, 243, 255, 122, 146, 0, 0, 0, 0, 73, 69, 78, 68, 174, 66, 96, 130,
+];
+const PNG_BASE64: &str =
+    "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAAD0lEQVR42mPgNGbgnHkGAANVAavz/3qSAAAAAElFTkSuQmCC";
+
+#[test]
+fn an_image_is_the_same_from_wherever_it_comes() {
+    let folder = TempDir::new().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let view = |uri: Value| {
+        let buffer =
+            if uri.is_null() { json!({ "byteLength": 75 }) } else { json!({ "uri": uri, "byteLength": 75 }) };
+        (
+            json!({ "bufferView": 0, "mimeType": "image/png" }),
+            json!({ "buffers": [buffer], "bufferViews": [{ "buffer": 0, "byteOffset": 3, "byteLength": 72 }] }),
+        )
+    };
+    let bin = [&[0; 3], &PNG[..]].concat();
+    std::fs::create_dir(at("sub folder")).unwrap();
+    std::fs::write(at("sub folder/ü.png"), PNG).unwrap();
+    std::fs::write(at("images.bin"), &bin).unwrap();
+    let none = json!({});
+    let cases = [
+        ("file", json!({ "uri": "sub%20folder/%C3%BC.png" }), none.clone()),
+        ("raw name", json!({ "uri": "sub folder/ü.png" }), none.clone()),
+        ("data URI", json!({ "uri": format!("data:image/png;base64,{PNG_BASE64}") }), none),
+        ("buffer", view(json!("images.bin")).0, view(json!("images.bin")).1),
+        // Three zero bytes are the four base64 letters AAAA.
+        ("data buffer", view(Value::Null).0, view(json!(format!("data:;base64,AAAA{PNG_BASE64}"))).1),
+        ("GLB", view(Value::Null).0, view(Value::Null).1),
+    ];
+    for (what, image, more) in cases {
+        let mut root = textured(image, json!({ "roughnessFactor": 0.5, "metallicFactor": 0.5 }));
+        merge(&mut root, more);
+        let path = if what == "GLB" {
+            write(&folder, "x.glb", glb(&root, &bin))
+        } else {
+            write(&folder, "x.gltf", root.to_string())
+        };
+        let scene = read(&path).unwrap();
+        assert_eq!(scene.warnings, [""; 0], "{what}");
+        let expected = Distribution::weighted([(0.1, 1.0), (0.3, 1.0)]).unwrap();
+        assert_eq!(ggx(&scene.materials[0]), &expected, "{what}");
+        assert_eq!(scene.materials[0].metallic, Some([0.0, 0.4]), "{what}");
+    }
+}
+
+#[test]
+fn deep_grey_and_jpeg_textures_are_read_too() {
+    let folder = TempDir::new().unwrap();
+    let scene_of = |name: &str| {
+        let root = textured(json!({ "uri": name }), json!({}));
+        read(&write(&folder, "x.gltf", root.to_string())).unwrap()
+    };
+    let range = |scene: &Scene| [ggx(&scene.materials[0]).min(), ggx(&scene.materials[0]).max()];
+
+    let deep = image::ImageBuffer::from_fn(4, 4, |x, _| image::Rgba([0_u16, 1 + x as u16, 65535, 0]));
+    deep.save(folder.path().join("deep.png")).unwrap();
+    let scene = scene_of("deep.png");
+    assert_eq!(range(&scene), [1.0 / 65535.0, 4.0 / 65535.0]);
+    assert_eq!(scene.materials[0].metallic, Some([1.0, 1.0]));
+
+    let grey = image::GrayImage::from_fn(4, 4, |x, y| image::Luma([51 + (4 * y + x) as u8]));
+    grey.save(folder.path().join("grey.png")).unwrap();
+    let scene = scene_of("grey.png");
+    assert_eq!(range(&scene), [51.0 / 255.0, 66.0 / 255.0]);
+    assert_eq!(scene.materials[0].metallic, Some(range(&scene)));
+
+    image::RgbImage::from_pixel(8, 8, image::Rgb([128; 3])).save(folder.path().join("x.jpg")).unwrap();
+    let [min, max] = range(&scene_of("x.jpg"));
+    assert!((min - 128.0 / 255.0).abs() < 2.0 / 255.0 && max - min < 2.0 / 255.0, "{min} {max}");
+}
+
+#[test]
+fn a_texture_that_cannot_be_read_widens_the_ranges_and_says_why() {
+    let folder = TempDir::new().unwrap();
+    write(&folder, "short.png", &PNG[..60]);
+    write(&folder, "x.ktx2", b"\xABKTX 20\xBB\r\n\x1A\n and so on");
+    write(&folder, "x.webp", b"RIFF\x24\0\0\0WEBPVP8 ");
+    write(&folder, "text.png", "not an image");
+    write(&folder, "empty.png", "");
+    // 2³¹ × 2³¹ texels, said in 57 bytes.
+    let mut bomb = PNG[..57].to_vec();
+    bomb[16..24].copy_from_slice(&[0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff]);
+    write(&folder, "bomb.png", bomb);
+    for (uri, why) in [
+        ("gone.png", "cannot be read"),
+        ("short.png", "cannot be decoded"),
+        ("x.ktx2", "KTX2 is not decoded"),
+        ("x.webp", "WebP is not decoded"),
+        ("text.png", "cannot be decoded"),
+        ("empty.png", "cannot be decoded"),
+        ("bomb.png", "cannot be decoded"),
+        (".", "not a file"),
+        ("%ff.png", "UTF-8"),
+        ("https://example.org/x.png", "network"),
+        ("data:image/png;base64,@@@@", "data URI"),
+        ("data:", "data URI"),
+    ] {
+        let factors = json!({ "roughnessFactor": 0.8, "metallicFactor": 0.25 });
+        let path = write(&folder, "x.gltf", textured(json!({ "uri": uri }), factors).to_string());
+        let scene = read(&path).unwrap();
+        let material = &scene.materials[0];
+        assert_eq!(ggx(material), &Distribution::uniform(0.0, 0.8), "{uri}");
+        assert_eq!(material.metallic, Some([0.0, 0.25]), "{uri}");
+        let [warning] = &scene.warnings[..] else { panic!("{uri}: {:?}", scene.warnings) };
+        let label = if uri.starts_with("data:") { "images[0]" } else { uri };
+        for word in ["material M", label, why, "[0, 0.8]", "[0, 0.25]"] {
+            assert!(warning.contains(word), "{warning:?} does not say {word:?}");
+        }
+    }
+}
+
+#[test]
+fn a_png_beside_a_basis_texture_is_used() {
+    let folder = TempDir::new().unwrap();
+    write(&folder, "x.png", PNG);
+    let mut root = textured(json!({ "uri": "gone.ktx2" }), json!({}));
+    root["images"] = json!([{ "uri": "gone.ktx2" }, { "uri": "x.png" }]);
+    root["textures"][0] = json!({ "extensions": { "KHR_texture_basisu": { "source": 0 } } });
+    let scene = read(&write(&folder, "x.gltf", root.to_string())).unwrap();
+    assert!(scene.warnings[0].contains("gone.ktx2"));
+    assert_eq!(ggx(&scene.materials[0]), &Distribution::uniform(0.0, 1.0));
+
+    root["textures"][0]["source"] = json!(1);
+    let scene = read(&write(&folder, "x.gltf", root.to_string())).unwrap();
+    assert_eq!(scene.warnings, [""; 0]);
+    assert_eq!(ggx(&scene.materials[0]).max(), 0.6);
+}
+
+#[test]
+fn only_what_meshes_use_is_read() {
+    let root = json!({
+        "asset": { "version": "2.0" },
+        "materials": [{ "name": "used" }, { "name": "unused" }, { "name": "variant" }, {}, { "name": "used" },
+                      { "name": "lamp", "extensions": { "KHR_materials_unlit": {} } }],
+        "meshes": [{ "primitives": [
+            { "attributes": {}, "material": 0, "extensions": { "KHR_materials_variants":
+                { "mappings": [{ "material": 2, "variants": [0] }] } } },
+            { "attributes": {}, "material": 3 }, { "attributes": {}, "material": 4 },
+            { "attributes": {}, "material": 5 }, { "attributes": {} },
+        ] }],
+    });
+    let scene = read_json(&root).unwrap();
+    assert_eq!(names(&scene), ["used", "variant", "material_3", "used_4", "default"]);
+    let left_out: Vec<_> = scene.left_out.iter().map(|l| (l.what.as_str(), l.why.as_str())).collect();
+    assert!(left_out.contains(&("material unused", "no mesh uses it")));
+    assert!(left_out.iter().any(|(what, why)| *what == "material lamp" && why.contains("unlit")));
+    // glTF's defaults: white, metal, rough.
+    let default = &scene.materials[4];
+    assert_eq!((models(default), default.metallic), (vec!["ggx"], Some([1.0; 2])));
+    assert_eq!(default.lobes[0].weights, Weights::Constant([[1.0; 3], [1.0; 3]]));
+    assert_eq!(ggx(default), &Distribution::constant(1.0));
+
+    // Without a mesh, all.
+    let mut library = root;
+    library["meshes"] = json!([]);
+    let scene = read_json(&library).unwrap();
+    assert_eq!(names(&scene), ["used", "unused", "variant", "material_3", "used_4"]);
+}
+
+#[test]
+fn weights_are_numbers_only_where_colour_and_metalness_are_constant() {
+    let mut root = json!({
+        "asset": { "version": "2.0" },
+        "materials": [{ "pbrMetallicRoughness": { "metallicFactor": 0.5, "baseColorFactor": [0.5, 0, 1, 1] } }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "material": 0 }] }],
+    });
+    let ggx = |root: &Value| read_json(root).unwrap().materials[0].lobes[1].weights.clone();
+    assert_eq!(ggx(&root), Weights::Constant([[0.27, 0.02, 0.52], [1.0; 3]]));
+    root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(1);
+    assert!(matches!(ggx(&root), Weights::Textured(_)));
+
+    // A black dielectric has no diffuse lobe.
+    root["materials"][0]["pbrMetallicRoughness"] =
+        json!({ "metallicFactor": 0, "baseColorFactor": [0, 0, 0, 1] });
+    let scene = read_json(&root).unwrap();
+    assert_eq!(models(&scene.materials[0]), ["ggx"]);
+    assert!(scene.left_out[0].why.contains("black"));
+}
+
+#[test]
+fn extensions_that_change_the_brdf_are_named_and_idle_ones_are_not() {
+    let warnings = |extensions: Value| {
+        let mut root = plain();
+        root["materials"][0]["extensions"] = extensions;
+        read_json(&root).unwrap().warnings
+    };
+    for (name, active) in [
+        ("KHR_materials_anisotropy", json!({ "anisotropyStrength": 0.5 })),
+        ("KHR_materials_clearcoat", json!({ "clearcoatFactor": 1 })),
+        ("KHR_materials_dispersion", json!({ "dispersion": 0.1 })),
+        ("KHR_materials_ior", json!({ "ior": 1.33 })),
+        ("KHR_materials_iridescence", json!({ "iridescenceFactor": 1 })),
+        ("KHR_materials_pbrSpecularGlossiness", json!({})),
+        ("KHR_materials_sheen", json!({ "sheenColorFactor": [0, 0.1, 0] })),
+        ("KHR_materials_specular", json!({ "specularTexture": { "index": 0 } })),
+        ("KHR_materials_specular", json!({ "specularFactor": 0.5 })),
+        ("KHR_materials_transmission", json!({ "transmissionFactor": 1 })),
+        ("KHR_materials_volume", json!({ "thicknessFactor": 1 })),
+        ("VENDOR_something_new", json!({})),
+    ] {
+        let [warning] = &warnings(json!({ name: active }))[..] else { panic!("{name}: no warning") };
+        assert!(warning.contains("material M") && warning.contains(name), "{warning}");
+    }
+    for (name, idle) in [
+        ("KHR_materials_clearcoat", json!({})),
+        ("KHR_materials_ior", json!({ "ior": 1.5 })),
+        ("KHR_materials_sheen", json!({ "sheenColorFactor": [0, 0, 0] })),
+        ("KHR_materials_specular", json!({ "specularFactor": 1, "specularColorFactor": [1, 1, 1] })),
+        ("KHR_materials_emissive_strength", json!({ "emissiveStrength": 5 })),
+    ] {
+        assert_eq!(warnings(json!({ name: idle })), [""; 0], "{name}");
+    }
+}
+
+// ---- glTF: what is wrong ------------------------------------------------------------------------
+
+#[test]
+fn broken_files_give_errors_that_name_the_place() {
+    let with = |path: &str, value: Value| {
+        let mut root = textured(json!({ "uri": "x.png" }), json!({}));
+        merge(
+            &mut root,
+            json!({
+                "meshes": [{ "primitives": [{ "attributes": {}, "material": 0 }] }],
+                "nodes": [{ "children": [1] }, { "children": [2] }, { "children": [], "mesh": 0 }],
+            }),
+        );
+        *root.pointer_mut(path).unwrap_or_else(|| panic!("no {path}")) = value;
+        root.to_string().into_bytes()
+    };
+    let pbr = "/materials/0/pbrMetallicRoughness";
+    let huge = json!(4_294_967_294_u32);
+    let cases = [
+        (Vec::new(), "EOF"),
+        (b"{".to_vec(), "line 1"),
+        (b"[]".to_vec(), "line 1"),
+        (b"\xff\xfe{}".to_vec(), "line 1"),
+        (b"{\"asset\": {\"version\": \"2.0\", \"generator\": \"\xff\"}}".to_vec(), "line 1"),
+        ("[".repeat(100_000).into_bytes(), "recursion limit"),
+        (json!({ "asset": { "version": "2.0" } }).to_string().into_bytes(), "neither a material nor a mesh"),
+        (with("/asset/version", json!("1.0")), "asset.version"),
+        (with("/meshes/0/primitives/0/material", huge.clone()), "meshes[0].primitives[0].material"),
+        (with("/meshes/0/primitives/0/material", json!(-1)), "line 1"),
+        (with("/meshes/0/primitives/0/material", json!(1_u64 << 40)), "line 1"),
+        (with(&format!("{pbr}/metallicRoughnessTexture/index"), huge.clone()), "metallicRoughnessTexture"),
+        (with(&format!("{pbr}/baseColorTexture/index"), json!(1)), "textures[1]"),
+        (with("/textures/0/source", huge.clone()), "textures[0]"),
+        (with("/nodes/2/children", json!([0])), "own ancestor"),
+        (with("/nodes/2/children", json!([2])), "own ancestor"),
+        (with("/nodes/0/children/0", huge), "nodes[0].children"),
+        (with(&format!("{pbr}/roughnessFactor"), json!(1.5)), "roughnessFactor is 1.5"),
+        (with(&format!("{pbr}/roughnessFactor"), json!(-0.1)), "materials[0] (M): roughnessFactor"),
+        (with(&format!("{pbr}/metallicFactor"), json!(1e300)), "metallicFactor is inf"),
+        (with(&format!("{pbr}/baseColorFactor/2"), json!(2)), "baseColorFactor[2] is 2"),
+        (
+            String::from_utf8(with(&format!("{pbr}/roughnessFactor"), json!("NaN")))
+                .unwrap()
+                .replace("\"NaN\"", "NaN")
+                .into_bytes(),
+            "line 1",
+        ),
+        (with(&format!("{pbr}/roughnessFactor"), Value::Null), "null"),
+    ];
+    let folder = TempDir::new().unwrap();
+    for (bytes, place) in cases {
+        let head = String::from_utf8_lossy(&bytes[..bytes.len().min(40)]).into_owned();
+        let message = refused(&write(&folder, "hostile.gltf", bytes));
+        assert!(message.contains(place), "{head}: {message:?} does not say {place:?}");
+    }
+}
+
+#[test]
+fn what_is_not_a_scene_is_refused() {
+    let folder = TempDir::new().unwrap();
+    refused(&folder.path().join("gone.gltf"));
+    let directory = folder.path().join("directory.glb");
+    std::fs::create_dir(&directory).unwrap();
+    refused(&directory);
+    assert!(refused(&write(&folder, "x.obj", "")).contains(".gltf"));
+}
+
+#[test]
+fn files_cut_short_are_refused_at_every_length() {
+    let folder = TempDir::new().unwrap();
+    let root = textured(json!({ "bufferView": 0 }), json!({})).to_string();
+    for length in 0..root.len() {
+        refused(&write(&folder, "cut.gltf", &root[..length]));
+    }
+    let binary = glb(&serde_json::from_str(&root).unwrap(), &PNG);
+    assert!(read(&write(&folder, "whole.glb", &binary)).is_ok());
+    for length in 0..binary.len() {
+        refused(&write(&folder, "cut.glb", &binary[..length]));
+    }
+}
+
+/// Reading may succeed or not; it must come back.
+#[test]
+fn damaged_bytes_never_panic() {
+    let folder = TempDir::new().unwrap();
+    let mut root = textured(json!({ "bufferView": 0 }), json!({}));
+    merge(
+        &mut root,
+        json!({
+            "buffers": [{ "byteLength": PNG.len() }],
+            "bufferViews": [{ "buffer": 0, "byteOffset": 0, "byteLength": PNG.len() }],
+            "nodes": [{ "children": [1] }, {}],
+        }),
+    );
+    let whole = glb(&root, &PNG);
+    let recipe = include_bytes!("../assets/demo/recipe.toml");
+    let mut state = 1_u64;
+    let mut random = |below: usize| {
+        // Knuth's MMIX generator; the high bits are the good ones.
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    let mut outcomes = [0; 2];
+    for round in 0..2000 {
+        let (name, source) = if round % 2 == 0 { ("x.glb", &whole[..]) } else { ("x.toml", &recipe[..]) };
+        let mut bytes = source.to_vec();
+        for _ in 0..=random(4) {
+            let at = random(bytes.len());
+            bytes[at] = [random(256) as u8, b'9', b'-', b'"', 0xff][random(5)];
+        }
+        outcomes[usize::from(read(&write(&folder, name, bytes)).is_ok())] += 1;
+    }
+    assert!(outcomes.iter().all(|&n| n > 50), "the damage is not of every kind: {outcomes:?}");
+}
+
+// ---- Recipes ------------------------------------------------------------------------------------
+
+#[test]
+fn the_commented_recipe_is_read() {
+    let scene = read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/demo/recipe.toml")).unwrap();
+    assert_eq!(names(&scene), ["gold", "plaster", "mirror", "painted wood"]);
+    assert_eq!(scene.tolerance, Some(1e-4));
+    let [gold, plaster, mirror, wood] = &scene.materials[..] else { unreachable!() };
+    assert_eq!(gold.lobes[0].weights, Weights::Constant([[1.0, 0.78, 0.34], [1.0; 3]]));
+    assert_eq!(plaster.lobes[0].weights, Weights::Constant([[0.8, 0.78, 0.74], [0.0; 3]]));
+    assert_eq!(mirror.lobes[0].weights, Weights::Constant([[0.9; 3], [1.0; 3]]));
+    assert_eq!([ggx(wood).min(), ggx(wood).max()], [0.35, 0.55]);
+
+    let [brdf, dfg, plaster, average] = &scene.tables[..] else { panic!("{:?}", scene.tables) };
+    let axes: Vec<_> = brdf.axes.iter().map(|axis| (axis.variable.name(), axis.len())).collect();
+    assert_eq!(axes, [("theta_i", 8), ("theta_e", 32), ("delta_phi", 64)]);
+    assert_eq!(brdf.subject, SubjectRequest::Material("gold".into()));
+    assert_eq!((dfg.name.as_deref(), dfg.tolerance), (Some("dfg"), Some(1e-5)));
+    assert_eq!(dfg.axes[0].range, [1e-3, 1.0]);
+    assert_eq!((plaster.grid, &plaster.axes[0].values), (Some([256, 512]), &vec![0.0, 0.5, 1.0, 1.5]));
+    assert_eq!(average.subject, SubjectRequest::Basis { model: "ggx".into(), roughness: Some(0.5) });
+    assert!(brdf.place.contains("recipe.toml: line "));
+}
+
+#[test]
+fn recipe_errors_name_the_line_and_the_valid_words() {
+    const GOLD: &str = "[materials.gold]\nlobes = [{ model = 'ggx', roughness = 0.3 }]\n";
+    let material = |lobe: &str| format!("\n[materials.m]\nlobes = [\n{lobe}\n]");
+    let table = |rest: &str| format!("{GOLD}[[tables]]\n{rest}\n");
+    let cases = [
+        ("".into(), "", &["materials", "tables"][..]),
+        ("tolerance = 1e-4\nmaterials = [".into(), "line 2", &[]),
+        ("tolerence = 1e-4".into(), "line 1", &["tolerence", "tolerance", "materials", "tables"]),
+        ("tolerance = 2".into(), "line 1", &["0.000000000001", "1"]),
+        ("tolerance = nan".into(), "line 1", &["NaN"]),
+        ("\ntolerance = '1'".into(), "line 2", &["number", "string"]),
+        ("\n\nmaterials = 3".into(), "line 3", &["table"]),
+        ("[materials.m]\n".into(), "line 1", &["lobes"]),
+        ("[materials.m]\nlobes = []".into(), "line 2", &["model"]),
+        ("[materials.m]\nlobe = []".into(), "line 2", &["lobe:", "lobes"]),
+        ("[materials.m]\nlobes=[]\n[materials.m]\n".into(), "line 3", &["duplicate"]),
+        ("[materials.'']\nlobes = []".into(), "line 1", &["name"]),
+        (material("{ roughness = 1 }"), "line 4", &["model"]),
+        (material("{ model = 'phong' }"), "line 4", &["phong", "lambert", "ggx", "mirror", "gltf_diffuse"]),
+        (
+            material("{ model = 'ggx', rougness = 1 }"),
+            "line 4",
+            &["rougness", "roughness", "alpha", "f0", "f90"],
+        ),
+        (material("{ model = 'ggx' }"), "line 4", &["roughness", "alpha"]),
+        (material("{ model = 'ggx', roughness = 1, alpha = 1 }"), "line 4", &["keep one"]),
+        (material("{ model = 'ggx', roughness = 1.1 }"), "line 4", &["1.1", "[0, 1]"]),
+        (material("{ model = 'ggx', roughness = [0.6, 0.3] }"), "line 4", &["reversed"]),
+        (material("{ model = 'ggx', roughness = [0.6] }"), "line 4", &["[a, b]"]),
+        (material("{ model = 'ggx', alpha = -1 }"), "line 4", &["-1", "[0, 1]"]),
+        (material("{ model = 'ggx', alpha = 1, f0 = [1, 1] }"), "line 4", &["three"]),
+        (material("{ model = 'ggx', alpha = 1, f0 = [1, 1, 3] }"), "line 4", &["3 is outside"]),
+        (material("{ model = 'lambert' }"), "line 4", &["albedo"]),
+        (material("{ model = 'lambert', albedo = 1.01 }"), "line 4", &["1.01"]),
+        (material("{ model = 'lambert', albedo = 1, roughness = 1 }"), "line 4", &["roughness", "albedo"]),
+        (material("{ model = 'mirror', alpha = 1 }"), "line 4", &["alpha", "f0", "f90"]),
+        (table("material = 'gold'"), "line 3", &["quantity"]),
+        (table("quantity = 'rho'"), "line 4", &["brdf", "rho_dh", "rho_hh", "split_sum"]),
+        (table("quantity = 'brdf'"), "line 3", &["material", "model"]),
+        (table("quantity = 'brdf'\nmaterial = 'gould'"), "line 5", &["gould", "gold"]),
+        (table("quantity = 'brdf'\nmaterial = 'gold'\nmodel = 'ggx'"), "line 6", &["keep one"]),
+        (table("quantity = 'brdf'\nmaterial = 'gold'\nroughness = 1"), "line 6", &["its own"]),
+        (table("quantity = 'brdf'\nmodel = 'lambert'\nroughness = 1"), "line 6", &["no roughness"]),
+        (table("quantity = 'brdf'\nmodel = 'ggx'\nroughness = [0, 1]"), "line 6", &["axis"]),
+        (table("quantity = 'brdf'\nmodel = 'ggx'\naxis = {}"), "line 6", &["axes", "grid", "tolerance"]),
+        (
+            table("quantity = 'split_sum'\nmodel = 'ggx'\naxes = { theta_i = 3 }"),
+            "line 6",
+            &["mu", "roughness"],
+        ),
+        (
+            table("quantity = 'rho_hh'\nmodel = 'lambert'\naxes = { roughness = 3 }"),
+            "line 6",
+            &["no roughness"],
+        ),
+        (
+            table("quantity = 'rho_hh'\nmodel = 'ggx'\nalpha = 1\naxes = { roughness = 3 }"),
+            "line 7",
+            &["roughness"],
+        ),
+        (table("quantity = 'rho_hh'\nmaterial = 'gold'\naxes = { roughness = 3 }"), "line 6", &["range"]),
+        (table("quantity = 'rho_dh'\nmodel = 'ggx'\naxes.theta_i = 0"), "line 6", &["count"]),
+        (table("quantity = 'rho_dh'\nmodel = 'ggx'\naxes.theta_i = 2.5"), "line 6", &["whole number"]),
+        (table("quantity = 'rho_dh'\nmodel = 'ggx'\naxes.theta_i = 9000000000"), "line 6", &["1048576"]),
+        (
+            table("quantity = 'rho_dh'\nmodel = 'ggx'\naxes.theta_i = { range = [0, 1] }"),
+            "line 6",
+            &["count"],
+        ),
+        (
+            table("quantity = 'rho_dh'\nmodel = 'ggx'\naxes.theta_i = { count = 3, range = [0, 90] }"),
+            "line 6",
+            &["90", "rad"],
+        ),
+        (
+            table("quantity = 'rho_dh'\nmodel = 'ggx'\naxes.theta_i = { count = 3, step = 1 }"),
+            "line 6",
+            &["step", "range", "positions", "mapping", "values"],
+        ),
+        (
+            table("quantity = 'rho_dh'\nmodel = 'ggx'\naxes.theta_i = { count = 3, positions = 'edges' }"),
+            "line 6",
+            &["centers", "nodes"],
+        ),
+        (
+            table("quantity = 'rho_dh'\nmodel = 'ggx'\naxes.theta_i = { count = 3, mapping = 'log' }"),
+            "line 6",
+            &["linear", "sqrt"],
+        ),
+        (
+            table("quantity = 'rho_dh'\nmodel = 'ggx'\naxes.theta_i = { count = 3, values = [0] }"),
+            "line 6",
+            &["count"],
+        ),
+        (
+            table("quantity = 'rho_dh'\nmodel = 'ggx'\naxes.theta_i = { values = [1, 0] }"),
+            "line 6",
+            &["increase"],
+        ),
+        (table("quantity = 'rho_dh'\nmodel = 'ggx'\ngrid = [0, 5]"), "line 6", &["0"]),
+        (table("quantity = 'rho_dh'\nmodel = 'ggx'\ngrid = 64"), "line 6", &["list"]),
+        (table("quantity = 'rho_dh'\nmodel = 'ggx'\nname = '../x'"), "line 6", &["files"]),
+        (
+            table(
+                "quantity = 'rho_dh'\nmodel = 'ggx'\nname = 'x'\n[[tables]]\nname = 'X'\nquantity = 'rho_hh'\nmodel = 'ggx'",
+            ),
+            "line 7",
+            &["another"],
+        ),
+    ];
+    let folder = TempDir::new().unwrap();
+    for (text, line, words) in cases {
+        let message = refused(&write(&folder, "hostile.toml", &text));
+        for word in [line].iter().chain(words) {
+            assert!(message.contains(word), "{text}\n{message:?} does not say {word:?}");
+        }
+        let after = message.split(line).nth(1).unwrap_or_default();
+        assert!(line.is_empty() || after.starts_with(':'), "{text}\n{message:?} is not at {line}");
+    }
+    let message = refused(&write(&folder, "hostile.toml", b"tolerance = 1e-4\n# \xff"));
+    assert!(message.contains("line 2") && message.contains("UTF-8"), "{message}");
+}
+
+#[test]
+fn roughness_and_alpha_say_the_same() {
+    let folder = TempDir::new().unwrap();
+    let lobe = |words: &str| {
+        let text = format!("[materials.m]\nlobes = [{{ model = 'ggx', {words} }}]");
+        read(&write(&folder, "x.toml", text)).unwrap().materials
+    };
+    assert_eq!(lobe("roughness = 0.5"), lobe("alpha = 0.25"));
+    assert_eq!(lobe("roughness = 0.5"), lobe("roughness = 0.5, f0 = [0.04, 0.04, 0.04], f90 = 1"));
+}
+
+// ---- Real scenes --------------------------------------------------------------------------------
+
+/// Khronos sample models, where they are at hand: ranges and quartiles as Pillow and NumPy count them.
+#[test]
+fn sample_models_give_the_ranges_of_their_textures() {
+    let data = std::env::var_os("GONIO_DATA").map(PathBuf::from);
+    let data = data.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data"));
+    let helmet = data.join("gltf/FlightHelmet/FlightHelmet.gltf");
+    if !helmet.exists() {
+        eprintln!("NOT TESTED: {} is not there; set GONIO_DATA to the folder of gltf/", helmet.display());
+        return;
+    }
+    let expected: [(&str, [u8; 5], [u8; 2]); 6] = [
+        ("HoseMat", [58, 88, 124, 158, 216], [0, 178]),
+        ("RubberWoodMat", [58, 88, 124, 158, 216], [0, 178]),
+        ("GlassPlasticMat", [16, 92, 108, 141, 233], [0, 0]),
+        ("MetalPartsMat", [41, 117, 147, 160, 218], [0, 255]),
+        ("LeatherPartsMat", [65, 92, 112, 145, 255], [0, 215]),
+        ("LensesMat", [28, 37, 64, 76, 123], [0, 0]),
+    ];
+    let scene = read(&helmet).unwrap();
+    assert_eq!(scene.warnings, [""; 0]);
+    assert_eq!(scene.materials.len(), expected.len());
+    for (material, (name, levels, metallic)) in scene.materials.iter().zip(expected) {
+        let r = ggx(material);
+        let found = [r.min(), r.quantile(0.25), r.quantile(0.5), r.quantile(0.75), r.max()];
+        assert_eq!(material.name, name);
+        assert_eq!(found, levels.map(|level| f64::from(level) / 255.0), "{name}");
+        assert_eq!(material.metallic, Some(metallic.map(|level| f64::from(level) / 255.0)), "{name}");
+    }
+
+    let lamp = read(&data.join("gltf/AnisotropyBarnLamp/AnisotropyBarnLamp.gltf")).unwrap();
+    assert_eq!(names(&lamp), ["Lamp Metal", "Lamp Filament", "Lamp Glass"]);
+    assert_eq!(ggx(&lamp.materials[0]), &Distribution::uniform(0.0, 1.0));
+    for word in ["KTX2", "KHR_materials_anisotropy", "KHR_materials_clearcoat", "KHR_materials_transmission"]
+    {
+        assert!(lamp.warnings.iter().any(|warning| warning.contains(word)), "{word}: {:?}", lamp.warnings);
+    }
+}
+
+// ---- Helpers ------------------------------------------------------------------------------------
+
+fn demo() -> TempDir {
+    let folder = TempDir::new().unwrap();
+    make_demo_scene::write(folder.path()).unwrap();
+    folder
+}
+
+fn names(scene: &Scene) -> Vec<&str> {
+    scene.materials.iter().map(|material| material.name.as_str()).collect()
+}
+
+fn models(material: &Material) -> Vec<&str> {
+    material.lobes.iter().map(|lobe| lobe.model.as_str()).collect()
+}
+
+/// The roughness of a material's ggx lobe.
+fn ggx(material: &Material) -> &Distribution {
+    material.lobes.iter().find(|lobe| lobe.model == "ggx").unwrap().roughness.as_ref().unwrap()
+}
+
+fn write(folder: &TempDir, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).unwrap();
+    path
+}
+
+fn read_json(root: &Value) -> gonio::error::Result<Scene> {
+    let folder = TempDir::new().unwrap();
+    read(&write(&folder, "x.gltf", root.to_string()))
+}
+
+/// The message with which a file is refused; it begins with the file.
+fn refused(path: &Path) -> String {
+    let message = match read(path) {
+        Ok(scene) => panic!("{} was read: {scene:?}", path.display()),
+        Err(error) => error.to_string(),
+    };
+    let file = path.display().to_string();
+    assert!(message.starts_with(&file), "{message:?} does not begin with the file");
+    message
+}
+
+/// One material M, no mesh.
+fn plain() -> Value {
+    json!({ "asset": { "version": "2.0" }, "materials": [{ "name": "M" }] })
+}
+
+/// One material M with a texture of this image, and these factors.
+fn textured(image: Value, factors: Value) -> Value {
+    let mut root = plain();
+    let mut pbr = json!({
+        "baseColorTexture": { "index": 0 }, "metallicRoughnessTexture": { "index": 0 },
+        "baseColorFactor": [1, 1, 1, 1], "roughnessFactor": 1, "metallicFactor": 1,
+    });
+    merge(&mut pbr, factors);
+    root["materials"][0]["pbrMetallicRoughness"] = pbr;
+    merge(&mut root, json!({ "images": [image], "textures": [{ "source": 0 }] }));
+    root
+}
+
+fn merge(into: &mut Value, from: Value) {
+    let (Value::Object(into), Value::Object(from)) = (into, from) else { panic!("two objects, please") };
+    into.extend(from);
+}
+
+/// A GLB of this JSON and this binary chunk.
+fn glb(root: &Value, bin: &[u8]) -> Vec<u8> {
+    let pad = |mut bytes: Vec<u8>, with: u8| {
+        bytes.resize(bytes.len().next_multiple_of(4), with);
+        bytes
+    };
+    let chunks = [(pad(root.to_string().into_bytes(), b' '), b"JSON"), (pad(bin.to_vec(), 0), b"BIN\0")];
+    let total: usize = 12 + chunks.iter().map(|(bytes, _)| 8 + bytes.len()).sum::<usize>();
+    let mut out = [&b"glTF"[..], &2_u32.to_le_bytes(), &(total as u32).to_le_bytes()].concat();
+    for (bytes, kind) in chunks {
+        out.extend([&(bytes.len() as u32).to_le_bytes(), &kind[..], &bytes].concat());
+    }
+    out
+}
