@@ -77,7 +77,8 @@ pub fn cross_check(
                 let difference = floor.map_or(difference, |floor| difference / truth.max(floor));
                 if difference.is_nan() { f64::INFINITY } else { difference }
             });
-            let found: Vec<_> = differences.zip(truth.iter().copied()).map(|(d, truth)| (d, truth, texel)).collect();
+            let found: Vec<_> =
+                differences.zip(truth.iter().copied()).map(|(d, truth)| (d, truth, texel)).collect();
             tick(share)?;
             Ok(found)
         })
@@ -99,7 +100,7 @@ pub fn cross_check(
 }
 
 /// The reference's channels of one texel. NaN where the reference has no value.
-fn reference(table: &TablePlan, texel: usize) -> Vec<f64> {
+pub fn reference(table: &TablePlan, texel: usize) -> Vec<f64> {
     let at: BTreeMap<_, _> = table
         .axes
         .iter()
@@ -146,7 +147,9 @@ fn sample(shape: &[usize], n: usize) -> Vec<usize> {
     let mut chosen = BTreeSet::new();
     for corner in 0..1usize << shape.len() {
         let at = |(k, &count): (usize, &usize)| if corner >> k & 1 == 1 { count - 1 } else { 0 };
-        chosen.insert(shape.iter().enumerate().map(|axis| (at(axis), axis.1)).fold(0, |flat, (k, n)| flat * n + k));
+        chosen.insert(
+            shape.iter().enumerate().map(|axis| (at(axis), axis.1)).fold(0, |flat, (k, n)| flat * n + k),
+        );
     }
     // A stride without a common factor visits every texel before it repeats one.
     let golden = (texels as f64 * 0.618_033_988_749_894_9) as usize;

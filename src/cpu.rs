@@ -58,7 +58,9 @@ fn integrate(inner: &Inner, lobe: &Lobe, k: usize, alpha: f64) -> [f64; 2] {
     let mut sum = [0.0; 2];
     let mut add = |weight: f64, [a, b]: [f64; 2]| sum = [sum[0] + weight * a, sum[1] + weight * b];
     match inner {
-        Inner::Slopes { slopes, mus, .. } if alpha < ALPHA_MIN_INTEGRAL => return (slopes.mirror_limit)(mus[k]),
+        Inner::Slopes { slopes, mus, .. } if alpha < ALPHA_MIN_INTEGRAL => {
+            return (slopes.mirror_limit)(mus[k]);
+        }
         Inner::Slopes { slopes, mus, azimuths, nodes } => {
             let per_column = azimuths.len() / mus.len();
             for &[c, t_max, t_max_inverse, weight] in &azimuths[k * per_column..(k + 1) * per_column] {

@@ -3,11 +3,14 @@
 pub mod axis;
 pub mod bake;
 pub mod check;
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod cli;
 mod cpu;
-pub mod gpu;
 pub mod error;
-//CFG
-//FILES pub mod files;
+#[cfg(feature = "files")]
+pub mod files;
+pub mod gpu;
 pub mod models;
 pub mod pair;
 pub mod plan;

@@ -60,7 +60,10 @@ mod tests {
                 let sum: f64 = rule.iter().map(|g| g.weight * g.x.powi(degree as i32)).sum();
                 // n roundings of weights that sum to one, and powi's.
                 let budget = 4e-16 * (n as f64 + degree as f64);
-                assert!((sum - 1.0 / (degree as f64 + 1.0)).abs() < budget, "n = {n}, degree {degree}: {sum}");
+                assert!(
+                    (sum - 1.0 / (degree as f64 + 1.0)).abs() < budget,
+                    "n = {n}, degree {degree}: {sum}"
+                );
             }
         }
     }

@@ -46,7 +46,8 @@ const MEAN_NODES: usize = 40;
 impl Work {
     /// The work of `lobe` in `table`.
     pub fn new(table: &TablePlan, lobe: &Lobe) -> Self {
-        let alphas = if lobe.model.has_roughness { table.alphas(lobe) } else { vec![0.0; table.alphas(lobe).len()] };
+        let alphas =
+            if lobe.model.has_roughness { table.alphas(lobe) } else { vec![0.0; table.alphas(lobe).len()] };
         let kind = match table.quantity.evaluation {
             Evaluation::Value => values(table),
             Evaluation::Directional => integrals(table, lobe, &directions(table), &[1.0]),
@@ -117,16 +118,22 @@ fn integrals(table: &TablePlan, lobe: &Lobe, thetas: &[f64], weights: &[f64]) ->
     };
     match (table.rule, lobe.model.integral) {
         (Rule::Grid { theta, phi }, _) => smooth(grid_cells(theta), grid_azimuths(phi)),
-        (Rule::Warped, Integral::Smooth) => smooth(gauss_cells(SMOOTH_NODES[0]), grid_azimuths(2 * SMOOTH_NODES[1])),
+        (Rule::Warped, Integral::Smooth) => {
+            smooth(gauss_cells(SMOOTH_NODES[0]), grid_azimuths(2 * SMOOTH_NODES[1]))
+        }
         (Rule::Warped, Integral::Slopes(slopes)) => {
             let mus = mus();
             let azimuths = mus.iter().flat_map(|&mu| slope_azimuths(mu)).collect();
             let nodes = gauss_legendre(SLOPE_NODES);
-            WorkKind::Integrals { inner: Inner::Slopes { slopes, mus, azimuths, nodes }, outer: weights.to_vec() }
+            WorkKind::Integrals {
+                inner: Inner::Slopes { slopes, mus, azimuths, nodes },
+                outer: weights.to_vec(),
+            }
         }
-        (Rule::Warped, Integral::Delta(directional)) => {
-            WorkKind::Integrals { inner: Inner::Analytic { directional, mus: mus() }, outer: weights.to_vec() }
-        }
+        (Rule::Warped, Integral::Delta(directional)) => WorkKind::Integrals {
+            inner: Inner::Analytic { directional, mus: mus() },
+            outer: weights.to_vec(),
+        },
     }
 }
 

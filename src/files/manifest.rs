@@ -40,6 +40,11 @@ pub fn verify(dir: &Path) -> Result<Vec<String>> {
     Ok(faults)
 }
 
+/// The SHA-256 of a file, in hexadecimal.
+pub fn sha256(path: &Path) -> Result<String> {
+    Ok(hash(&fs::read(path).map_err(Error::io("read", path))?))
+}
+
 /// A file that a manifest lists, by its name and hash.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Listed {

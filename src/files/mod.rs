@@ -12,7 +12,7 @@ mod scale;
 mod set;
 
 pub use entry::TableEntry;
-pub use manifest::{read_manifest, verify};
+pub use manifest::{read_manifest, sha256, verify};
 pub use set::{Files, TableSet};
 
 use crate::error::{Error, Result};

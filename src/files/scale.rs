@@ -91,6 +91,11 @@ impl Scale {
             }
             Kind::Log => {
                 let (low, high) = ((a.log10() - 1e-6).ceil() as i32, (b.log10() + 1e-6).floor() as i32);
+                if high - low < 2 {
+                    let within = |value: &f64| (a..=b).contains(value);
+                    let all = (low - 1..=high).flat_map(|n| [1.0, 2.0, 5.0].map(|k| k * 10f64.powi(n)));
+                    return all.filter(within).map(|value| (value, short(value))).collect();
+                }
                 let step = ((f64::from(high - low) / most).ceil() as usize).max(1);
                 (low..=high).step_by(step).map(|n| (10f64.powi(n), power_of_ten(n))).collect()
             }

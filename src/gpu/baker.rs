@@ -102,7 +102,12 @@ impl Layout {
 impl Baker {
     /// A baker on the caller's device. wgpu's handles are shared, so it keeps cheap clones.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
-        Self { device: device.clone(), queue: queue.clone(), pipelines: Mutex::default(), composing: Mutex::default() }
+        Self {
+            device: device.clone(),
+            queue: queue.clone(),
+            pipelines: Mutex::default(),
+            composing: Mutex::default(),
+        }
     }
 
     /// Records the baking of `table` into `encoder` and returns the buffer that will hold it. Does
@@ -129,12 +134,23 @@ impl Baker {
         }
         let width = table.axes.last().map_or(1, |axis| axis.len());
         let row = if is_value(table) { layout.padded } else { width };
-        Ok(Recorded { buffer: tile.buffer, width, row, height: table.texels() / width, channels: layout.channels })
+        Ok(Recorded {
+            buffer: tile.buffer,
+            width,
+            row,
+            height: table.texels() / width,
+            channels: layout.channels,
+        })
     }
 
     /// The work of every lobe of a table, uploaded.
     pub(super) fn stages(&self, table: &TablePlan) -> Result<Vec<Stages>> {
-        table.lobes.iter().enumerate().map(|(k, lobe)| Stages::new(self, lobe, &Work::new(table, lobe), k > 0)).collect()
+        table
+            .lobes
+            .iter()
+            .enumerate()
+            .map(|(k, lobe)| Stages::new(self, lobe, &Work::new(table, lobe), k > 0))
+            .collect()
     }
 
     /// The steps of one tile, and the buffer that they fill.
@@ -170,10 +186,14 @@ impl Baker {
             let end = (first + per_step).min(range.end);
             let job = Job { first: count(first)?, end: count(end)?, base: count(range.start)?, ..stage.job };
             let job = self.init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
-            let buffers = [&job].into_iter().chain(&stage.inputs).chain(more_inputs.iter().copied()).chain([output]);
+            let buffers =
+                [&job].into_iter().chain(&stage.inputs).chain(more_inputs.iter().copied()).chain([output]);
             let entries: Vec<_> = (0..)
                 .zip(buffers)
-                .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+                .map(|(binding, buffer)| wgpu::BindGroupEntry {
+                    binding,
+                    resource: buffer.as_entire_binding(),
+                })
                 .collect();
             steps.push(Step {
                 pipeline: pipeline.clone(),
@@ -251,7 +271,8 @@ pub(super) const RAW_BYTES: usize = 8;
 
 /// A count as the device takes it.
 pub(super) fn count(n: usize) -> Result<u32> {
-    u32::try_from(n).map_err(|_| Error::Device(format!("{n} is more than a device counts to; take fewer samples")))
+    u32::try_from(n)
+        .map_err(|_| Error::Device(format!("{n} is more than a device counts to; take fewer samples")))
 }
 
 impl Step {

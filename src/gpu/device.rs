@@ -76,6 +76,11 @@ impl Adapter {
         kind(&self.info)
     }
 
+    /// The driver and its version.
+    pub fn driver(&self) -> String {
+        driver(&self.info)
+    }
+
     /// Opens the device, with the limits of every WebGPU device and larger buffers where it has them.
     pub fn open(&self) -> Result<Device> {
         let offered = self.adapter.limits();
@@ -123,7 +128,11 @@ impl Device {
                         Err(e) => failures.push(e.to_string()),
                     }
                 }
-                let why = if failures.is_empty() { "no GPU and no Vulkan driver here".into() } else { failures.join("; ") };
+                let why = if failures.is_empty() {
+                    "no GPU and no Vulkan driver here".into()
+                } else {
+                    failures.join("; ")
+                };
                 Ok((None, format!("fell back to the CPU path in f64: {why}")))
             }
             DeviceChoice::Named(name) => {
@@ -135,7 +144,10 @@ impl Device {
                     Error::Device(if names.is_empty() {
                         format!("no adapter is named \"{name}\": there is none at all. {INSTALL}")
                     } else {
-                        format!("no adapter is named \"{name}\"; there are {}, auto and cpu", names.join(", "))
+                        format!(
+                            "no adapter is named \"{name}\"; there are {}, auto and cpu",
+                            names.join(", ")
+                        )
                     })
                 })?;
                 let device = adapter.open()?;
@@ -157,7 +169,7 @@ impl Device {
 
     /// The driver and its version.
     pub fn driver(&self) -> String {
-        format!("{} {}", self.info.driver, self.info.driver_info).trim().to_string()
+        driver(&self.info)
     }
 
     /// The baker on this device.
@@ -182,6 +194,10 @@ impl fmt::Display for Device {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} ({}, {})", self.name(), self.kind(), self.driver())
     }
+}
+
+fn driver(info: &wgpu::AdapterInfo) -> String {
+    format!("{} {}", info.driver, info.driver_info).trim().to_string()
 }
 
 fn kind(info: &wgpu::AdapterInfo) -> &'static str {

@@ -12,5 +12,5 @@ mod texture;
 
 pub use baker::{Baker, Recorded};
 pub use compose::{Kernel, compose, validate};
-pub use device::{Adapter, Device, DeviceChoice, adapters};
+pub use device::{Adapter, Device, DeviceChoice, INSTALL, adapters};
 pub use texture::TextureFormat;

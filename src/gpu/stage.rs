@@ -93,19 +93,27 @@ impl Stage {
         let (kernel, azimuths, nodes, inputs) = match inner {
             Inner::Slopes { mus, azimuths, nodes, .. } => {
                 // What is so near the mirror that it is the mirror's in f64 is 0 to the kernel.
-                let alphas: Vec<_> =
-                    alphas.iter().map(|&alpha| if alpha < ALPHA_MIN_INTEGRAL { 0.0 } else { alpha }).collect();
+                let alphas: Vec<_> = alphas
+                    .iter()
+                    .map(|&alpha| if alpha < ALPHA_MIN_INTEGRAL { 0.0 } else { alpha })
+                    .collect();
                 let azimuths_f32: Vec<_> = azimuths.iter().map(|a| a.map(|x| x as f32)).collect();
                 let nodes_f32: Vec<_> = nodes.iter().map(|n| [n.x as f32, n.weight as f32]).collect();
-                let inputs =
-                    vec![baker.reals(&alphas), baker.reals(mus), baker.input(&azimuths_f32), baker.input(&nodes_f32)];
+                let inputs = vec![
+                    baker.reals(&alphas),
+                    baker.reals(mus),
+                    baker.input(&azimuths_f32),
+                    baker.input(&nodes_f32),
+                ];
                 (Kernel::Slopes, azimuths.len() / mus.len(), nodes.len(), inputs)
             }
             Inner::Product { pairs, azimuths } => {
                 let inputs = vec![baker.reals(alphas), baker.pairs(pairs), baker.azimuths(azimuths)];
                 (Kernel::Product, azimuths.len(), 0, inputs)
             }
-            Inner::Analytic { mus, .. } => (Kernel::Analytic, 0, 0, vec![baker.reals(alphas), baker.reals(mus)]),
+            Inner::Analytic { mus, .. } => {
+                (Kernel::Analytic, 0, 0, vec![baker.reals(alphas), baker.reals(mus)])
+            }
         };
         let job = Job {
             columns: count(inner.count())?,

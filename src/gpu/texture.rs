@@ -71,7 +71,10 @@ impl Baker {
             return refuse(format!("{format:?} has no room for {} channels", table.channels.len()));
         }
         if format.is_half() && table.quantity.error == ErrorKind::Relative {
-            return refuse(format!("values of {} leave the range of halves; take a float format", table.quantity.name));
+            return refuse(format!(
+                "values of {} leave the range of halves; take a float format",
+                table.quantity.name
+            ));
         }
         let recorded = self.record(encoder, table)?;
         let size = [recorded.width, recorded.height].map(|n| u32::try_from(n).unwrap_or(u32::MAX));
@@ -109,7 +112,10 @@ impl Baker {
         let buffers: Vec<_> = (0..).zip(buffers).map(bind).collect();
         let entries: Vec<_> = buffers
             .iter()
-            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding: *binding, resource: buffer.as_entire_binding() })
+            .map(|(binding, buffer)| wgpu::BindGroupEntry {
+                binding: *binding,
+                resource: buffer.as_entire_binding(),
+            })
             .collect();
         let bind_group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
@@ -130,10 +136,13 @@ impl Baker {
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format: format.wgpu(),
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::COPY_DST
+                | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(pitch), rows_per_image: None };
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(pitch), rows_per_image: None };
         encoder.copy_buffer_to_texture(
             wgpu::TexelCopyBufferInfo { buffer: &texels, layout },
             texture.as_image_copy(),

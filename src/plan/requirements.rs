@@ -18,6 +18,8 @@ pub struct Plan {
     pub materials: Vec<MaterialPlan>,
     /// The tables to bake.
     pub tables: Vec<TablePlan>,
+    /// The error that no table may exceed, where a table does not name its own.
+    pub tolerance: f64,
     /// What is not baked, and why.
     pub left_out: Vec<LeftOut>,
     /// What the user should know before trusting the tables.
@@ -95,21 +97,16 @@ impl Plan {
     pub fn new(scene: &Scene, selection: &Selection) -> Result<Self> {
         let quantity = selection.quantity.as_deref().map(quantity::find).transpose()?;
         let tolerance = selection.tolerance.or(scene.tolerance).unwrap_or(DEFAULT_TOLERANCE);
-        let selected = |m: &&Material| selection.material.as_ref().is_none_or(|name| *name == m.name);
-        let materials: Vec<_> = scene.materials.iter().filter(selected).collect();
-        if let (Some(name), []) = (&selection.material, &materials[..]) {
-            let names: Vec<_> = scene.materials.iter().map(|m| m.name.as_str()).collect();
-            return Err(Error::input(format!(
-                "{}: no material \"{name}\"; there are {}",
-                scene.file.display(),
-                names.join(", ")
-            )));
-        }
+        let materials: Vec<_> = match &selection.material {
+            Some(name) => vec![find_material(scene, name)?],
+            None => scene.materials.iter().collect(),
+        };
 
         let mut plan = Self {
             bases: Vec::new(),
             materials: Vec::new(),
             tables: Vec::new(),
+            tolerance,
             left_out: scene.left_out.clone(),
             warnings: scene.warnings.clone(),
         };
@@ -164,9 +161,12 @@ impl Plan {
             }
             let range = Distribution::union(lobes().filter_map(|lobe| lobe.roughness.as_ref()));
             for quantity in QUANTITIES {
-                let Some(axes) = self.default_axes(model.name, model, quantity, range.as_ref())? else { continue };
+                let Some(axes) = self.default_axes(model.name, model, quantity, range.as_ref())? else {
+                    continue;
+                };
                 let name = format!("{}.{}", model.name, quantity.name);
-                self.tables.push(TablePlan::basis(name, quantity, model, None, axes)?.with_tolerance(tolerance));
+                self.tables
+                    .push(TablePlan::basis(name, quantity, model, None, axes)?.with_tolerance(tolerance));
             }
         }
         for material in materials {
@@ -179,13 +179,17 @@ impl Plan {
             };
             for quantity in [&BRDF, &RHO_DH] {
                 let what = format!("{}.{}", material.name, quantity.name);
-                let delta = |lobe: &Lobe| lobe.model.is_delta() || lobe.model.has_roughness && is_mirror(lobe.roughness);
+                let delta = |lobe: &Lobe| {
+                    lobe.model.is_delta() || lobe.model.has_roughness && is_mirror(lobe.roughness)
+                };
                 if quantity.evaluation == Evaluation::Value && lobes.iter().any(delta) {
                     self.leave_out(what, "a lobe of it is a delta and has no values");
                     continue;
                 }
                 let axes = natural_axes(quantity)?;
-                self.tables.push(material_table(what, quantity, material, lobes.clone(), axes)?.with_tolerance(tolerance));
+                self.tables.push(
+                    material_table(what, quantity, material, lobes.clone(), axes)?.with_tolerance(tolerance),
+                );
             }
         }
         Ok(())
@@ -319,18 +323,38 @@ fn requested(request: &TableRequest, scene: &Scene, tolerance: f64) -> Result<Ta
             TablePlan::basis(name(model), quantity, models::find(model)?, *roughness, axes)?
         }
         SubjectRequest::Material(subject) => {
-            let material = scene
-                .materials
-                .iter()
-                .find(|m| m.name == *subject)
-                .ok_or_else(|| Error::input(format!("no material \"{subject}\"")))?;
-            let lobes = constant_lobes(material)
-                .map_err(|why| Error::input(format!("material \"{subject}\": {why}; tabulate its bases")))?;
-            material_table(name(subject), quantity, material, lobes, axes)?
+            TablePlan::material(name(subject), quantity, scene, subject, axes)?
         }
     };
     let rule = request.grid.map_or(Rule::Warped, |[theta, phi]| Rule::Grid { theta, phi });
     Ok(table.with_rule(rule)?.with_tolerance(request.tolerance.unwrap_or(tolerance)))
+}
+
+impl TablePlan {
+    /// A material that is the same everywhere, its RGB as channels.
+    pub fn material(
+        name: impl Into<String>,
+        quantity: &'static Quantity,
+        scene: &Scene,
+        material: &str,
+        axes: Vec<Axis>,
+    ) -> Result<Self> {
+        let found = find_material(scene, material)?;
+        let lobes = constant_lobes(found)
+            .map_err(|why| Error::input(format!("material \"{material}\": {why}; tabulate its bases")))?;
+        material_table(name.into(), quantity, found, lobes, axes)
+    }
+}
+
+fn find_material<'a>(scene: &'a Scene, name: &str) -> Result<&'a Material> {
+    scene.materials.iter().find(|m| m.name == name).ok_or_else(|| {
+        let names: Vec<_> = scene.materials.iter().map(|m| m.name.as_str()).collect();
+        Error::input(format!(
+            "{}: no material \"{name}\"; there are {}",
+            scene.file.display(),
+            names.join(", ")
+        ))
+    })
 }
 
 fn material_table(

@@ -8,6 +8,8 @@ mod gltf;
 mod recipe;
 
 pub use distribution::Distribution;
+#[cfg(feature = "scene")]
+pub use recipe::parse as parse_recipe;
 
 use crate::axis::Axis;
 use crate::error::{Error, Result};

@@ -19,8 +19,12 @@ const MAX_GRID: usize = 1 << 16;
 
 /// Reads a recipe.
 pub(super) fn read(path: &Path) -> Result<Scene> {
-    let bytes = std::fs::read(path).map_err(Error::io("read", path))?;
-    let document = Document::new(path, &bytes)?;
+    parse(path, &std::fs::read(path).map_err(Error::io("read", path))?)
+}
+
+/// Reads a recipe from its text; `path` is what messages call it.
+pub fn parse(path: &Path, bytes: &[u8]) -> Result<Scene> {
+    let document = Document::new(path, bytes)?;
     let table = document.parse()?;
     let root = document.root(&table).only(&["tolerance", "materials", "tables"])?;
 

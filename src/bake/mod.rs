@@ -1,5 +1,11 @@
 //! Bakes tables: evaluate, look, cross-check.
 
+#[cfg(feature = "files")]
+mod set;
+
+#[cfg(feature = "files")]
+pub use set::{Baked, Options, bake_set};
+
 use crate::check::{Check, cross_check};
 use crate::cpu;
 use crate::error::{Error, Result};
@@ -83,7 +89,13 @@ impl Evaluator {
     /// # Errors
     /// When the device fails, a value is negative or not finite, or more light leaves than the
     /// models promise.
-    pub fn bake(&self, plan: &TablePlan, check: Check, stages: &mut Stages, observer: &dyn Observer) -> Result<Table> {
+    pub fn bake(
+        &self,
+        plan: &TablePlan,
+        check: Check,
+        stages: &mut Stages,
+        observer: &dyn Observer,
+    ) -> Result<Table> {
         observer.begin(&format!("baking {}", plan.name));
         let start = Instant::now();
         let tick = |share| observer.advance(share);
@@ -110,7 +122,11 @@ impl Evaluator {
             axes: plan.axes.clone(),
             channels: plan.channels.clone(),
             values,
-            rule: if plan.quantity.evaluation == Evaluation::Value { "exact".into() } else { plan.rule.to_string() },
+            rule: if plan.quantity.evaluation == Evaluation::Value {
+                "pointwise".into()
+            } else {
+                plan.rule.to_string()
+            },
             precision: self.precision().into(),
             error,
             seconds,

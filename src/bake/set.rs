@@ -1,0 +1,166 @@
+//! Bakes everything that a plan asks for into a folder, with its manifest, all or nothing.
+
+use super::{Evaluator, Observer, Stages, within_tolerance};
+use crate::check::Check;
+use crate::error::{Error, Result};
+use crate::files::{self, Files, Format, Provenance, TableEntry, TableSet};
+use crate::plan::{Basis, MaterialPlan, Plan};
+use crate::scene::LeftOut;
+use crate::table::Table;
+use serde::Serialize;
+use std::path::Path;
+use std::time::Instant;
+
+/// What to write, and how much of it to check.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// The files of each table.
+    pub formats: Vec<Format>,
+    /// How many texels of each table to compare with the reference.
+    pub check: Check,
+}
+
+/// What `manifest.json` says.
+#[derive(Debug, Serialize)]
+struct Manifest<'a> {
+    schema: u32,
+    gonio: Version,
+    scene: SceneFile,
+    device: DeviceEntry,
+    tolerance: f64,
+    requirements: Requirements<'a>,
+    tables: Vec<TableEntry<'a>>,
+    stages: Stages,
+}
+
+#[derive(Debug, Serialize)]
+struct Version {
+    version: &'static str,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct SceneFile {
+    file: String,
+    sha256: String,
+}
+
+#[derive(Debug, Serialize)]
+struct DeviceEntry {
+    kind: &'static str,
+    name: String,
+    driver: String,
+}
+
+#[derive(Debug, Serialize)]
+struct Requirements<'a> {
+    bases: &'a [Basis],
+    left_out: &'a [LeftOut],
+    warnings: Vec<String>,
+    materials: &'a [MaterialPlan],
+}
+
+/// What became of a plan.
+#[derive(Debug)]
+pub struct Baked {
+    /// The tables, in the plan's order.
+    pub tables: Vec<Table>,
+    /// Their files.
+    pub files: Vec<Files>,
+    /// The plan's warnings, and what the tables themselves give reason to say.
+    pub warnings: Vec<String>,
+    /// Where the time went.
+    pub stages: Stages,
+    /// The manifest as it was written.
+    pub manifest: serde_json::Value,
+}
+
+/// Bakes `plan`, which came from the file `scene`, into `dir`.
+///
+/// # Errors
+/// When a table misses its tolerance, the device fails or a file cannot be written: what was in the
+/// folder before is then still there, whole.
+pub fn bake_set(
+    plan: &Plan,
+    scene: &Path,
+    evaluator: &Evaluator,
+    dir: &Path,
+    options: &Options,
+    mut stages: Stages,
+    observer: &dyn Observer,
+) -> Result<Baked> {
+    let scene = SceneFile { file: scene.display().to_string(), sha256: files::sha256(scene)? };
+    let device = DeviceEntry::new(evaluator);
+    let provenance = Provenance::from([
+        ("scene".into(), scene.file.clone()),
+        ("scene_sha256".into(), scene.sha256.clone()),
+        ("device".into(), format!("{} ({})", device.name, device.driver)),
+    ]);
+    let mut set = TableSet::create(dir)?;
+    let (mut tables, mut written, mut misses) = (Vec::new(), Vec::new(), Vec::new());
+    for table_plan in &plan.tables {
+        let table = evaluator.bake(table_plan, options.check, &mut stages, observer)?;
+        if let Err(miss) = within_tolerance(table_plan, &table) {
+            misses.push(miss.to_string());
+        }
+        if misses.is_empty() {
+            let start = Instant::now();
+            written.push(set.write(&table, &options.formats, &provenance)?);
+            stages.write += start.elapsed().as_secs_f64();
+        }
+        tables.push(table);
+    }
+    if !misses.is_empty() {
+        misses.push(format!("{}: left as it was", dir.display()));
+        return Err(Error::Promise(misses.join("\n")));
+    }
+    let warnings: Vec<_> = plan.warnings.iter().cloned().chain(energy_warnings(plan, &tables)).collect();
+    let manifest = serde_json::to_value(Manifest {
+        schema: 1,
+        gonio: Version { version: env!("CARGO_PKG_VERSION") },
+        scene,
+        device,
+        tolerance: plan.tolerance,
+        requirements: Requirements {
+            bases: &plan.bases,
+            left_out: &plan.left_out,
+            warnings: warnings.clone(),
+            materials: &plan.materials,
+        },
+        tables: tables.iter().zip(&written).map(|(t, files)| TableEntry::new(t, files.clone())).collect(),
+        stages,
+    })
+    .map_err(|e| Error::Internal(format!("manifest: {e}")))?;
+    set.commit(&manifest)?;
+    Ok(Baked { tables, files: written, warnings, stages, manifest })
+}
+
+/// A material whose format lets it reflect more than it receives says so.
+fn energy_warnings(plan: &Plan, tables: &[Table]) -> Vec<String> {
+    let gains =
+        |table: &&Table| table.quantity == "rho_dh" && plan.materials.iter().any(|m| m.name == table.subject);
+    let largest = |table: &Table| table.values.iter().copied().fold(0.0, f32::max);
+    tables
+        .iter()
+        .filter(gains)
+        .filter(|table| largest(table) > 1.0 + plan.tolerance as f32)
+        .map(|table| {
+            format!(
+                "{}: reflects up to {:.4} of what it receives; glTF 2.0's metallic-roughness adds its lobes \
+                 without conserving energy",
+                table.subject,
+                largest(table)
+            )
+        })
+        .collect()
+}
+
+impl DeviceEntry {
+    fn new(evaluator: &Evaluator) -> Self {
+        match evaluator {
+            Evaluator::Device(device) => {
+                Self { kind: device.kind(), name: device.name().into(), driver: device.driver() }
+            }
+            Evaluator::Cpu => Self { kind: "CPU", name: "CPU path".into(), driver: "f64".into() },
+        }
+    }
+}

@@ -1,0 +1,196 @@
+//! `gonio bake`
+
+use super::watch::Watch;
+use super::{HEADING, print_json, warn};
+use crate::bake::{Baked, Evaluator, Options, Stages, bake_set};
+use crate::check::Check;
+use crate::error::{Error, Result};
+use crate::files::Format;
+use crate::gpu::DeviceChoice;
+use crate::plan::{Plan, Selection};
+use crate::scene;
+use serde_json::json;
+use std::path::PathBuf;
+use std::time::Instant;
+
+#[derive(clap::Args)]
+#[command(after_help = AFTER_HELP)]
+pub struct Args {
+    /// A scene (.gltf, .glb) or a recipe (.toml)
+    scene: PathBuf,
+    /// The folder for the tables and manifest.json; made if it is not there
+    #[arg(long, short, value_name = "DIR", required_unless_present = "dry_run")]
+    out: Option<PathBuf>,
+    /// The error that no table may exceed: absolute for integrals, relative for values [default: the
+    /// recipe's, else 1e-4]
+    #[arg(long, value_name = "T", value_parser = tolerance)]
+    tolerance: Option<f64>,
+    /// auto: the best GPU, else software Vulkan, else the CPU path; cpu; or a part of an adapter's name
+    #[arg(long, value_name = "NAME", default_value = "auto")]
+    device: DeviceChoice,
+    /// Files to write for each table, separated by commas
+    #[arg(long, value_name = "F", value_delimiter = ',', default_value = "exr,png")]
+    format: Vec<Format>,
+    /// Texels of each table to compare with the f64 reference: a count, or all
+    #[arg(long, value_name = "N", default_value = "256")]
+    check: Check,
+    /// Only this material and the bases that it uses
+    #[arg(long, value_name = "NAME")]
+    material: Option<String>,
+    /// Only this quantity: brdf, rho_dh, rho_hh or split_sum
+    #[arg(long, value_name = "Q")]
+    quantity: Option<String>,
+    /// Print the plan and compute nothing
+    #[arg(long)]
+    dry_run: bool,
+    /// Print the manifest on stdout, and everything for people on stderr
+    #[arg(long)]
+    json: bool,
+}
+
+const AFTER_HELP: &str = "\
+Examples:
+  gonio bake helmet.gltf --out tables
+  gonio bake helmet.gltf --dry-run
+  gonio bake dfg.toml --out tables --format exr,npy --check all --device cpu
+
+A recipe asks for tables without a scene:
+  tolerance = 1e-4
+  [materials.gold]
+  lobes = [{ model = \"ggx\", roughness = 0.3, f0 = [1.0, 0.78, 0.34] }]
+  [[tables]]
+  quantity = \"brdf\"
+  material = \"gold\"
+  axes = { theta_i = 32, theta_e = 64, delta_phi = 128 }
+  [[tables]]
+  name = \"dfg\"
+  quantity = \"split_sum\"
+  model = \"ggx\"
+  axes = { mu = 64, roughness = 64 }
+
+An axis is a count, or { count, range = [a, b], positions = \"centers\" | \"nodes\", mapping = \"linear\" |
+\"sqrt\" }, or { values = [] }. The README has the rest.
+
+Exit codes: 0 success, 1 a table misses its tolerance, 2 bad input, 3 no device, 130 interrupted. Whatever
+was in DIR stays as it was unless all of it succeeds.";
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("\"{text}\" is not a number"))?;
+    if value > 0.0 && value <= 1.0 { Ok(value) } else { Err("give a number above 0, to 1".into()) }
+}
+
+pub fn run(args: &Args) -> Result<()> {
+    let start = Instant::now();
+    let scene = scene::read(&args.scene)?;
+    let selection = Selection {
+        material: args.material.clone(),
+        quantity: args.quantity.clone(),
+        tolerance: args.tolerance,
+    };
+    let plan = Plan::new(&scene, &selection)?;
+    let mut stages = Stages { scene: start.elapsed().as_secs_f64(), ..Stages::default() };
+    let say = Say { json: args.json };
+
+    if args.dry_run {
+        if args.json {
+            return print_json(&plan_json(&plan));
+        }
+        plan.warnings.iter().for_each(|w| warn(w));
+        say.line(plan.to_string().trim_end());
+        return Ok(());
+    }
+    let Some(out) = &args.out else { return Err(Error::input("give --out DIR")) };
+    plan.warnings.iter().for_each(|w| warn(w));
+
+    let start = Instant::now();
+    let (evaluator, line) = Evaluator::choose(&args.device)?;
+    stages.device = start.elapsed().as_secs_f64();
+    say.line(&format!("{HEADING}device{HEADING:#}  {line}"));
+
+    let watch = Watch::new(2 * plan.tables.len());
+    let mut formats = args.format.clone();
+    formats.dedup();
+    let options = Options { formats, check: args.check };
+    let baked = bake_set(&plan, &args.scene, &evaluator, out, &options, stages, &watch);
+    watch.finish();
+    let baked = baked?;
+    baked.warnings[plan.warnings.len()..].iter().for_each(|w| warn(w));
+    summary(&say, &plan, &baked);
+    say.line(&format!("{} tables in {}", baked.tables.len(), out.display()));
+    if args.json { print_json(&baked.manifest) } else { Ok(()) }
+}
+
+/// One line a table: size, rule, error, time.
+fn summary(say: &Say, plan: &Plan, baked: &Baked) {
+    let width = baked.tables.iter().map(|t| t.name.chars().count()).max().unwrap_or(0);
+    say.line(&format!(
+        "{HEADING}{:width$}  {:>16}  {:>9}  {:>9}  {:>7}  {:>8}{HEADING:#}",
+        "table", "texels", "max error", "rms", "checked", "time"
+    ));
+    for table in &baked.tables {
+        let shape: Vec<_> = table.shape().iter().map(usize::to_string).collect();
+        let shape = if shape.is_empty() { "1".into() } else { shape.join("×") };
+        let number = |x: Option<f64>| x.map_or("–".into(), |x| format!("{x:.1e}"));
+        say.line(&format!(
+            "{:width$}  {shape:>16}  {:>9}  {:>9}  {:>7}  {:>5.0} ms",
+            table.name,
+            number(table.error.measured_max),
+            number(table.error.measured_rms),
+            table.error.texels_checked,
+            1e3 * table.seconds,
+        ));
+    }
+    let s = &baked.stages;
+    let ms = |name: &str, seconds: f64| format!("{name} {:.0}", 1e3 * seconds);
+    let stages = [
+        ms("scene", s.scene),
+        ms("device", s.device),
+        ms("compose", s.compose),
+        ms("compile", s.compile),
+        ms("dispatch", s.dispatch),
+        ms("readback", s.readback),
+        ms("check", s.check),
+        ms("write", s.write),
+    ];
+    say.line(&format!("{HEADING}ms{HEADING:#}  {}", stages.join(", ")));
+    if !plan.left_out.is_empty() {
+        say.line(&format!("{} things left out: see the manifest, or --dry-run", plan.left_out.len()));
+    }
+}
+
+/// The plan for a machine.
+fn plan_json(plan: &Plan) -> serde_json::Value {
+    let tables: Vec<_> = plan
+        .tables
+        .iter()
+        .map(|t| {
+            json!({
+                "name": t.name,
+                "quantity": t.quantity.name,
+                "subject": t.subject,
+                "axes": t.axes.iter().map(|a| json!({
+                    "name": a.variable.name(), "count": a.len(), "range": a.range,
+                    "positions": a.positions, "mapping": a.mapping,
+                })).collect::<Vec<_>>(),
+                "channels": t.channels,
+                "rule": t.rule.to_string(),
+                "tolerance": t.tolerance,
+            })
+        })
+        .collect();
+    json!({
+        "bases": plan.bases, "materials": plan.materials, "tables": tables,
+        "left_out": plan.left_out, "warnings": plan.warnings,
+    })
+}
+
+/// Where words for people go: stdout, or stderr where stdout is for a machine.
+struct Say {
+    json: bool,
+}
+
+impl Say {
+    fn line(&self, text: &str) {
+        if self.json { anstream::eprintln!("{text}") } else { anstream::println!("{text}") }
+    }
+}

@@ -1,0 +1,82 @@
+//! The command line: parse, call, print.
+
+mod bake;
+mod devices;
+mod eval;
+mod watch;
+
+use crate::error::{Error, Result};
+use anstream::eprintln;
+use anstyle::{AnsiColor, Style};
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+#[derive(Parser)]
+#[command(name = "gonio", version, about, max_term_width = 100, after_help = AFTER_HELP)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Bake the tables that a scene needs, and measure their error
+    Bake(bake::Args),
+    /// Evaluate a BRDF for one pair of directions
+    Eval(eval::Args),
+    /// List the devices that can bake
+    Devices(devices::Args),
+}
+
+const AFTER_HELP: &str = "\
+Examples:
+  gonio bake scene.gltf --out tables
+  gonio eval --model ggx --set roughness=0.3 --theta-i 45deg --theta-e 45deg
+  gonio devices
+
+Exit codes: 0 success, 1 a promise is not met, 2 bad input, 3 no device, 70 internal error, 130 interrupted";
+
+/// Bold red.
+const ERROR: Style = AnsiColor::Red.on_default().bold();
+/// Bold yellow.
+const WARNING: Style = AnsiColor::Yellow.on_default().bold();
+/// Bold.
+const HEADING: Style = Style::new().bold();
+
+/// Runs the command and returns its exit code.
+pub fn main() -> ExitCode {
+    let result = match Cli::parse().command {
+        Command::Bake(args) => bake::run(&args),
+        Command::Eval(args) => eval::run(&args),
+        Command::Devices(args) => devices::run(&args),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{ERROR}error:{ERROR:#} {error}");
+            ExitCode::from(exit_code(&error))
+        }
+    }
+}
+
+/// The table in the README.
+fn exit_code(error: &Error) -> u8 {
+    match error {
+        Error::Promise(_) => 1,
+        Error::Input(_) | Error::Io { .. } => 2,
+        Error::Device(_) => 3,
+        Error::Internal(_) => 70,
+        Error::Interrupted => 130,
+    }
+}
+
+fn warn(message: &str) {
+    eprintln!("{WARNING}warning:{WARNING:#} {message}");
+}
+
+/// Prints a value as JSON on stdout.
+fn print_json(value: &impl serde::Serialize) -> Result<()> {
+    let text = serde_json::to_string_pretty(value).map_err(|e| Error::Internal(e.to_string()))?;
+    anstream::println!("{text}");
+    Ok(())
+}

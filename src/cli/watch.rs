@@ -1,0 +1,73 @@
+//! Progress for people, and Ctrl-C.
+
+use crate::bake::Observer;
+use crate::error::{Error, Result};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// A bar that appears after a second, on a terminal only, and a stop on Ctrl-C.
+pub struct Watch {
+    bar: ProgressBar,
+    start: Instant,
+    step: Mutex<Step>,
+    stop: Arc<AtomicBool>,
+}
+
+/// Steps begun, and the share done of the last.
+struct Step {
+    count: u64,
+    share: f64,
+}
+
+/// The bar's resolution within a step.
+const TICKS: u64 = 100;
+const PATIENCE: Duration = Duration::from_secs(1);
+
+impl Watch {
+    /// Watches so many steps.
+    pub fn new(steps: usize) -> Self {
+        let stop = Arc::new(AtomicBool::new(false));
+        let asked = stop.clone();
+        // Where no handler can be set, Ctrl-C ends the process; files are safe then too.
+        let _ = ctrlc::set_handler(move || asked.store(true, Ordering::Relaxed));
+        let bar = ProgressBar::with_draw_target(Some(steps as u64 * TICKS), ProgressDrawTarget::hidden());
+        if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}  {elapsed}") {
+            bar.set_style(style);
+        }
+        Self { bar, start: Instant::now(), step: Mutex::new(Step { count: 0, share: 0.0 }), stop }
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl Observer for Watch {
+    fn begin(&self, what: &str) {
+        self.bar.set_message(what.to_string());
+        let mut step = self.step.lock().unwrap_or_else(PoisonError::into_inner);
+        *step = Step { count: step.count + 1, share: 0.0 };
+        self.bar.set_position((step.count - 1) * TICKS);
+    }
+
+    fn advance(&self, share: f64) -> Result<()> {
+        if self.stop.load(Ordering::Relaxed) {
+            self.bar.finish_and_clear();
+            return Err(Error::Interrupted);
+        }
+        if self.bar.is_hidden() && self.start.elapsed() > PATIENCE {
+            // indicatif draws on a terminal only.
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+        let mut step = self.step.lock().unwrap_or_else(PoisonError::into_inner);
+        step.share += share;
+        let position = (step.count.max(1) - 1) * TICKS + (step.share * TICKS as f64) as u64;
+        if position > self.bar.position() {
+            self.bar.set_position(position);
+        }
+        Ok(())
+    }
+}
