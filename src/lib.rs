@@ -20,3 +20,5 @@ pub mod reference;
 pub mod scene;
 pub mod table;
 mod work;
+
+pub use wgpu;

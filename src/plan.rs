@@ -82,7 +82,7 @@ impl TablePlan {
             quantity,
             subject: model.name.into(),
             axes,
-            channels: model.components.iter().map(|c| c.to_string()).collect(),
+            channels: model.components.iter().map(|c| c.name.to_string()).collect(),
             lobes: vec![Lobe { model, roughness, weights: unit[..model.components.len()].to_vec() }],
             rule: Rule::Warped,
             tolerance: DEFAULT_TOLERANCE,
@@ -140,10 +140,12 @@ impl TablePlan {
             return refuse(format!("{} has no roughness to be an axis", self.subject));
         }
         if let Rule::Grid { theta, phi } = self.rule {
-            let fits = (1..=MAX_GRID).contains(&theta) && (2..=MAX_GRID).contains(&phi);
+            let hemispherical = self.quantity.evaluation == Evaluation::Hemispherical;
+            let most = if hemispherical { MAX_GRID_RHO_HH } else { MAX_GRID };
+            let fits = (1..=most).contains(&theta) && (2..=MAX_GRID).contains(&phi);
             if !fits || phi % 2 == 1 {
                 return refuse(format!(
-                    "a grid of {theta} × {phi}; give θ from 1 and φ from 2, even, both to {MAX_GRID}"
+                    "a grid of {theta} × {phi}; give θ from 1 to {most}, and φ from 2 to {MAX_GRID}, even"
                 ));
             }
         }
@@ -191,7 +193,9 @@ impl TablePlan {
 pub const DEFAULT_TOLERANCE: f64 = 1e-4;
 
 /// The finest grid rule: one invocation's loop must stay below what every driver runs.
-const MAX_GRID: usize = 16_384;
+pub(crate) const MAX_GRID: usize = 16_384;
+/// The finest θ of a grid under the mean over directions, which one invocation sums as well.
+const MAX_GRID_RHO_HH: usize = 512;
 
 impl fmt::Display for TablePlan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -30,7 +30,7 @@ pub struct Table {
     pub precision: String,
     /// How far the values are from the truth.
     pub error: TableError,
-    /// Time to compute it, without the check.
+    /// Time to compute it and to read it back; neither compiling nor the check.
     pub seconds: f64,
 }
 

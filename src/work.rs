@@ -61,15 +61,6 @@ impl Work {
         };
         Self { alphas, kind }
     }
-
-    /// Evaluations of f or of an integrand, all in all.
-    pub fn evaluations(&self) -> u64 {
-        let per_alpha = match &self.kind {
-            WorkKind::Values { pairs, azimuths } => pairs.len() * azimuths.len(),
-            WorkKind::Integrals { inner, .. } => inner.count() * inner.cost(),
-        };
-        (self.alphas.len() * per_alpha) as u64
-    }
 }
 
 impl Inner {
@@ -110,7 +101,6 @@ fn values(table: &TablePlan) -> WorkKind {
 /// Integrals over one direction for each fixed θ, times `weights`, which run over the fixed ones
 /// where a texel sums several (ρ_hh), and are just 1 where each is a texel.
 fn integrals(table: &TablePlan, lobe: &Lobe, thetas: &[f64], weights: &[f64]) -> WorkKind {
-    let mus = || thetas.iter().map(|theta| theta.cos().max(MU_MIN)).collect::<Vec<_>>();
     let smooth = |grid: Vec<Cell>, azimuths: Vec<Azimuth>| {
         let pairs = thetas.iter().flat_map(|&theta| grid.iter().map(move |cell| cell.pair(theta))).collect();
         let outer = weights.iter().flat_map(|w| grid.iter().map(move |cell| w * cell.weight)).collect();
@@ -122,7 +112,7 @@ fn integrals(table: &TablePlan, lobe: &Lobe, thetas: &[f64], weights: &[f64]) ->
             smooth(gauss_cells(SMOOTH_NODES[0]), grid_azimuths(2 * SMOOTH_NODES[1]))
         }
         (Rule::Warped, Integral::Slopes(slopes)) => {
-            let mus = mus();
+            let mus: Vec<_> = thetas.iter().map(|theta| theta.cos().max(MU_MIN)).collect();
             let azimuths = mus.iter().flat_map(|&mu| slope_azimuths(mu)).collect();
             let nodes = gauss_legendre(SLOPE_NODES);
             WorkKind::Integrals {
@@ -131,7 +121,7 @@ fn integrals(table: &TablePlan, lobe: &Lobe, thetas: &[f64], weights: &[f64]) ->
             }
         }
         (Rule::Warped, Integral::Delta(directional)) => WorkKind::Integrals {
-            inner: Inner::Analytic { directional, mus: mus() },
+            inner: Inner::Analytic { directional, mus: thetas.iter().map(|theta| theta.cos()).collect() },
             outer: weights.to_vec(),
         },
     }

@@ -16,7 +16,8 @@ pub(super) fn encode(table: &Table) -> Result<Vec<u8>> {
     match axes[..] {
         [] => numbers(table),
         [x] => lines(table, x),
-        [x, y] => maps(table, x, y),
+        // As the file has it: the last axis is the width.
+        [y, x] => maps(table, x, y),
         [ref slow @ .., x, y] => multiples(table, slow, x, y),
     }
 }

@@ -4,7 +4,7 @@
 use super::fresnel::schlick::{self, fresnel};
 use super::masking::smith::{self, visibility};
 use super::ndf::ggx::{self, map, map_end, ndf};
-use super::{Integral, Model, Slopes, part};
+use super::{Component, Integral, Model, Slopes, part};
 use crate::pair::Half;
 use crate::reference;
 
@@ -12,7 +12,7 @@ pub(crate) static MODEL: Model = Model {
     name: "ggx",
     summary: "GGX microfacets, height-correlated Smith, Schlick: f = F0·A + F90·B",
     source: "Walter et al. 2007, eq. 20 and 33; Heitz 2014, eq. 99; Schlick 1994, eq. 15",
-    components: &["A", "B"],
+    components: &Component::schlick(0.04),
     has_roughness: true,
     rho_bound: 1.0,
     parts: &[schlick::PART, ggx::PART, smith::PART, part!("lobe/microfacet")],

@@ -1,14 +1,14 @@
 //! The ideal mirror. Twin of `shaders/delta/mirror.wgsl`.
 
 use super::fresnel::schlick::{self, fresnel};
-use super::{Integral, Model, part};
+use super::{Component, Integral, Model, part};
 use crate::reference;
 
 pub(crate) static MODEL: Model = Model {
     name: "mirror",
     summary: "the ideal mirror, a delta, with Schlick's Fresnel: no values, integrals in closed form",
     source: "f = F δ(θi − θe) δ(φi + π − φe) / (cos θi sin θi)",
-    components: &["A", "B"],
+    components: &Component::schlick(1.0),
     has_roughness: false,
     rho_bound: 1.0,
     parts: &[schlick::PART, part!("delta/mirror")],

@@ -24,8 +24,8 @@ pub struct Model {
     pub summary: &'static str,
     /// Author, year, equation.
     pub source: &'static str,
-    /// The names of its components: `A` alone, or `A` and `B` where Fresnel splits it.
-    pub components: &'static [&'static str],
+    /// Its components: `A` alone, or `A` and `B` where Fresnel splits it.
+    pub components: &'static [Component],
     /// Whether it takes a roughness (α = roughness²).
     pub has_roughness: bool,
     /// The bound on ρ_dh = ∫ (A + B) cos θ dω that the model promises; 1 conserves energy.
@@ -39,6 +39,17 @@ pub struct Model {
     pub(crate) lobe: fn(&Pair, &Azimuth, alpha: f64) -> [f64; 2],
     /// The independent f64 reference.
     pub reference: Option<&'static dyn Reference>,
+}
+
+/// A component of a model, and what a material weighs it with.
+#[derive(Debug)]
+pub struct Component {
+    /// Its channel's name.
+    pub name: &'static str,
+    /// What recipes call its weight.
+    pub weight: &'static str,
+    /// The weight where a recipe gives none; `None`: it must.
+    pub default: Option<f64>,
 }
 
 /// A file of WGSL.
@@ -88,6 +99,19 @@ pub fn find(name: &str) -> Result<&'static Model> {
         let names: Vec<_> = MODELS.iter().map(|m| m.name).collect();
         Error::input(format!("no model \"{name}\"; there are {}", names.join(", ")))
     })
+}
+
+impl Component {
+    /// The one component of a diffuse lobe.
+    const DIFFUSE: [Self; 1] = [Self { name: "A", weight: "albedo", default: None }];
+
+    /// What Schlick's Fresnel splits a lobe into.
+    const fn schlick(f0: f64) -> [Self; 2] {
+        [
+            Self { name: "A", weight: "f0", default: Some(f0) },
+            Self { name: "B", weight: "f90", default: Some(1.0) },
+        ]
+    }
 }
 
 impl Model {

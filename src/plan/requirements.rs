@@ -255,7 +255,8 @@ impl Plan {
                     Weights::Constant(weights) => Weight::Constant(weights[k]),
                     Weights::Textured(formulas) => Weight::Textured(formulas[k].clone()),
                 };
-                let components = model.components.iter().enumerate().map(|(k, c)| (c.to_string(), weight(k)));
+                let components =
+                    model.components.iter().enumerate().map(|(k, c)| (c.name.to_string(), weight(k)));
                 plan.weights.push(BasisWeight { basis: model.name.into(), components: components.collect() });
                 // Every weight of every format is at most 1: they multiply reflectances.
                 let largest = match &lobe.weights {

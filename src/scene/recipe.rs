@@ -5,7 +5,8 @@ mod document;
 use super::{Distribution, Material, MaterialLobe, Scene, SubjectRequest, TableRequest, Weights};
 use crate::axis::{Axis, Mapping, Positions, Variable};
 use crate::error::{Error, Result};
-use crate::models::MODELS;
+use crate::models::{Component, MODELS};
+use crate::plan::MAX_GRID;
 use crate::quantity::QUANTITIES;
 use document::{Document, Fields, Item};
 use std::collections::HashSet;
@@ -13,9 +14,6 @@ use std::path::Path;
 
 /// Tables are not better than f32, and a tolerance above 1 promises nothing.
 const TOLERANCES: [f64; 2] = [1e-12, 1.0];
-
-/// The longest side of a `grid`.
-const MAX_GRID: usize = 1 << 16;
 
 /// Reads a recipe.
 pub(super) fn read(path: &Path) -> Result<Scene> {
@@ -68,7 +66,7 @@ fn lobe(item: Item) -> Result<MaterialLobe> {
     let model = model(item.any_table()?.require("model")?)?;
     let mut keys = vec!["model"];
     keys.extend(if model.has_roughness { &["roughness", "alpha"][..] } else { &[] });
-    keys.extend(colors(model.name).iter().map(|&(key, _)| key));
+    keys.extend(model.components.iter().map(|component| component.weight));
     let fields = item.table(&keys)?;
 
     let roughness = match (model.has_roughness, roughness(&fields)?) {
@@ -76,7 +74,7 @@ fn lobe(item: Item) -> Result<MaterialLobe> {
         (_, roughness) => roughness,
     };
     let mut weights = [[0.0; 3]; 2];
-    for (weight, &(key, default)) in weights.iter_mut().zip(colors(model.name)) {
+    for (weight, &Component { weight: key, default, .. }) in weights.iter_mut().zip(model.components) {
         *weight = match (fields.get(key), default) {
             (Some(item), _) => color(item)?,
             (None, Some(value)) => [value; 3],
@@ -84,16 +82,6 @@ fn lobe(item: Item) -> Result<MaterialLobe> {
         };
     }
     Ok(MaterialLobe { model: model.name.into(), roughness, weights: Weights::Constant(weights) })
-}
-
-/// The weights of a model's components A and B, as recipes call them, with their defaults: a diffuse
-/// lobe is albedo · A, a specular one f0 · A + f90 · B.
-fn colors(model: &str) -> &'static [(&'static str, Option<f64>)] {
-    match model {
-        "lambert" | "gltf_diffuse" => &[("albedo", None)],
-        "mirror" => &[("f0", Some(1.0)), ("f90", Some(1.0))],
-        _ => &[("f0", Some(0.04)), ("f90", Some(1.0))],
-    }
 }
 
 /// A colour in [0, 1]: one number, or three.

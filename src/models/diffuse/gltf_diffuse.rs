@@ -1,6 +1,6 @@
 //! The diffuse lobe of glTF 2.0 metallic-roughness. Twin of `shaders/diffuse/gltf_diffuse.wgsl`.
 
-use crate::models::{Integral, Model, fresnel::schlick, part};
+use crate::models::{Component, Integral, Model, fresnel::schlick, part};
 use crate::pair::Half;
 use crate::reference;
 use std::f64::consts::FRAC_1_PI;
@@ -9,7 +9,7 @@ pub(crate) static MODEL: Model = Model {
     name: "gltf_diffuse",
     summary: "glTF's diffuse lobe: f = albedo (1 − Fc)/π with Fc of the half vector",
     source: "glTF 2.0 specification, Appendix B.3.5",
-    components: &["A"],
+    components: &Component::DIFFUSE,
     has_roughness: false,
     rho_bound: 1.0,
     parts: &[schlick::PART, part!("diffuse/gltf_diffuse")],

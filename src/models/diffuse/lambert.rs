@@ -1,6 +1,6 @@
 //! Lambert 1760. Twin of `shaders/diffuse/lambert.wgsl`.
 
-use crate::models::{Integral, Model, part};
+use crate::models::{Component, Integral, Model, part};
 use crate::reference;
 use std::f64::consts::FRAC_1_PI;
 
@@ -8,7 +8,7 @@ pub(crate) static MODEL: Model = Model {
     name: "lambert",
     summary: "ideal diffuse: f = albedo/π",
     source: "Lambert, Photometria, 1760",
-    components: &["A"],
+    components: &Component::DIFFUSE,
     has_roughness: false,
     rho_bound: 1.0,
     parts: &[part!("diffuse/lambert")],

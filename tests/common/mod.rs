@@ -1,0 +1,79 @@
+//! What the tests share: one device for the process, and short ways to tables.
+#![allow(dead_code)] // each test file uses its own part
+
+use gonio::axis::{Axis, Mapping, Positions, Variable};
+use gonio::bake::{Evaluator, Stages, Unobserved};
+use gonio::check::Check;
+use gonio::gpu::{DeviceChoice, INSTALL};
+use gonio::models::{self, Model};
+use gonio::plan::TablePlan;
+use gonio::quantity::Quantity;
+use gonio::table::Table;
+use std::sync::OnceLock;
+
+/// The device under test. There must be one: a suite that skips proves nothing.
+pub fn device() -> &'static Evaluator {
+    static DEVICE: OnceLock<Evaluator> = OnceLock::new();
+    DEVICE.get_or_init(|| {
+        let (evaluator, line) = Evaluator::choose(&DeviceChoice::Auto).unwrap();
+        assert!(matches!(evaluator, Evaluator::Device(_)), "no device to test on. {INSTALL}");
+        println!("tested on {line}");
+        evaluator
+    })
+}
+
+/// Both evaluators.
+pub fn evaluators() -> [&'static Evaluator; 2] {
+    [device(), &Evaluator::Cpu]
+}
+
+pub fn model(name: &str) -> &'static Model {
+    models::find(name).unwrap()
+}
+
+pub fn axis(variable: Variable, count: usize) -> Axis {
+    Axis::natural(variable, count).unwrap()
+}
+
+pub fn nodes(variable: Variable, count: usize, range: [f64; 2]) -> Axis {
+    Axis::new(variable, count, range, Positions::Nodes, Mapping::Linear).unwrap()
+}
+
+/// The given values, sorted, without repeats.
+pub fn listed(variable: Variable, values: &[f64]) -> Axis {
+    let mut values = values.to_vec();
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    Axis::listed(variable, values).unwrap()
+}
+
+/// A basis over `axes`, after a roughness axis if the model has one.
+pub fn basis(
+    quantity: &'static Quantity,
+    model: &'static Model,
+    roughness: &[f64],
+    axes: Vec<Axis>,
+) -> TablePlan {
+    let swept = model.has_roughness.then(|| listed(Variable::Roughness, roughness));
+    let axes = swept.into_iter().chain(axes).collect();
+    TablePlan::basis("test", quantity, model, None, axes).unwrap()
+}
+
+pub fn bake(evaluator: &Evaluator, plan: &TablePlan, check: Check) -> Table {
+    evaluator.bake(plan, check, &mut Stages::default(), &Unobserved).unwrap()
+}
+
+/// A reproducible sequence in [0, 1): the additive recurrence of the golden section.
+pub fn golden(n: usize, seed: f64) -> Vec<f64> {
+    (0..n).map(|k| (seed + k as f64 * 0.618_033_988_749_894_9).fract()).collect()
+}
+
+/// The extremes of θ, rad.
+pub fn extreme_thetas() -> Vec<f64> {
+    let right = std::f64::consts::FRAC_PI_2;
+    vec![0.0, 1e-7, 1e-3, 0.3, 0.8, right - 1e-3, right - 1e-6, right]
+}
+
+/// The extremes of roughness whose lobes have values: α from 1e-6 to 1.
+pub const EXTREME_ROUGHNESS: [f64; 7] =
+    [1e-3, 1e-2, 0.031_622_776_601_683_79, 0.1, 0.316_227_766_016_837_9, 0.7, 1.0];

@@ -1,0 +1,190 @@
+//! Promises of hemispherical integrals: closed forms, the furnace, agreement with the f64 reference at
+//! every input, and of the definition with the warped rule.
+
+mod common;
+
+use common::*;
+use gonio::axis::Axis;
+use gonio::axis::Variable::{self, Mu, ThetaI};
+use gonio::bake::{Evaluator, WARPED};
+use gonio::check::Check;
+use gonio::models::MODELS;
+use gonio::plan::{Rule, TablePlan};
+use gonio::quantity::{QUANTITIES, RHO_DH, RHO_HH, SPLIT_SUM};
+use gonio::table::Table;
+
+/// Every integral of every model, at the extremes and between: α from 0 to 1, μ from 2⁻²⁴ (θ = 90°)
+/// to 1.
+#[test]
+fn agree_with_the_reference_at_every_input() {
+    let mut roughness = EXTREME_ROUGHNESS.to_vec();
+    roughness.extend([0.0, 1e-4, 3e-3, 0.05, 0.2, 0.5]);
+    let mut mus = vec![1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.03, 0.1, 1.0];
+    mus.extend(golden(12, 0.2));
+    for model in MODELS {
+        for quantity in QUANTITIES.into_iter().filter(|q| q.name != "brdf") {
+            let axes = match quantity.variables {
+                [] => vec![],
+                [Mu] => vec![listed(Mu, &mus)],
+                _ => vec![listed(ThetaI, &extreme_thetas())],
+            };
+            let plan = basis(quantity, model, &roughness, axes);
+            for evaluator in evaluators() {
+                let table = bake(evaluator, &plan, Check::All);
+                let worst = table.error.measured_max.unwrap();
+                println!("{}.{} {}: {worst:.1e}", model.name, quantity.name, table.precision);
+                assert!(worst <= WARPED, "{}.{}: {:?}", model.name, quantity.name, table.error);
+            }
+        }
+    }
+}
+
+/// Lambert: f = 1/π, ρ = 1, whatever the rule. The grid's weights are exact, so only rounding is left:
+/// blocks of 32 and their sums, in f32.
+#[test]
+fn of_lambert_are_its_albedo_by_both_rules() {
+    for rule in [Rule::Warped, Rule::Grid { theta: 7, phi: 6 }, Rule::Grid { theta: 300, phi: 600 }] {
+        for evaluator in evaluators() {
+            let plan = basis(&RHO_DH, model("lambert"), &[], vec![listed(ThetaI, &extreme_thetas())]);
+            let table = bake(evaluator, &plan.with_rule(rule).unwrap(), Check::Sample(0));
+            assert!(table.values.iter().all(|rho| (rho - 1.0).abs() <= 5e-7), "{rule}: {:?}", table.values);
+        }
+    }
+}
+
+/// GGX with F = 1 at normal incidence and α = 1: ρ = 1 − ln 2. For α → 0, ρ depends on μ/α alone: its
+/// minimum is 0.8915 near μ = 1.11 α, and its limits are 1 on both sides.
+#[test]
+fn of_ggx_meet_its_closed_forms() {
+    for evaluator in evaluators() {
+        let white = |roughness: f64, mu: f64| {
+            let plan = basis(&SPLIT_SUM, model("ggx"), &[roughness], vec![listed(Mu, &[mu])]);
+            bake(evaluator, &plan, Check::Sample(0)).values.iter().map(|&x| f64::from(x)).sum::<f64>()
+        };
+        assert!((white(1.0, 1.0) - (1.0 - 2f64.ln())).abs() <= WARPED);
+        for alpha in [1e-4, 1e-3] {
+            let at = |ratio: f64| white(f64::sqrt(alpha), ratio * alpha);
+            assert!((at(1.11) - 0.8915).abs() < 5e-4, "{}", at(1.11));
+            assert!(at(1.11) < at(0.9) && at(1.11) < at(1.35));
+            // 1 − ρ falls as (α/μ)² on one side and as μ/α on the other.
+            assert!(
+                (at(100.0) - 1.0).abs() < 1e-3 && (at(1e-3) - 1.0).abs() < 1e-2,
+                "{} {}",
+                at(100.0),
+                at(1e-3)
+            );
+        }
+    }
+}
+
+/// α → 0 at fixed μ is the mirror, and what is left falls as α²: two orders for each of α.
+#[test]
+fn of_ggx_join_the_mirror() {
+    let mus = [0.05, 0.3, 1.0];
+    let mirror =
+        bake(&Evaluator::Cpu, &basis(&SPLIT_SUM, model("mirror"), &[], vec![listed(Mu, &mus)]), Check::All);
+    let gap = |alpha: f64| {
+        let plan = basis(&SPLIT_SUM, model("ggx"), &[alpha.sqrt()], vec![listed(Mu, &mus)]);
+        let ggx = bake(&Evaluator::Cpu, &plan, Check::All);
+        ggx.values.iter().zip(&mirror.values).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+    };
+    assert_eq!(gap(0.0), 0.0);
+    // The rounding of stored f32 hides what is below 1e-7.
+    let (wide, narrow) = (gap(1e-2), gap(1e-3));
+    assert!(narrow < wide / 50.0 && gap(1e-5) < 5e-7, "{wide} {narrow} {}", gap(1e-5));
+}
+
+/// The white furnace: with F = 1 no lobe sends back more than it gets, nor less than nothing.
+#[test]
+fn conserve_energy() {
+    for model in MODELS {
+        let roughness: Vec<_> = (0..=40).map(|k| k as f64 / 40.0).collect();
+        let plan = basis(&SPLIT_SUM, model, &roughness, vec![axis(Mu, 64)]);
+        let table = bake(device(), &plan, Check::Sample(0));
+        for texel in 0..table.texels() {
+            let rho: f32 = table.texel(texel).iter().sum();
+            assert!(
+                (0.0..=1.0 + WARPED as f32).contains(&rho),
+                "{}: {rho} at {}",
+                model.name,
+                table.place(texel)
+            );
+        }
+    }
+}
+
+/// ρ_hh is the cosine-weighted mean of ρ_dh: 2 ∫ ρ μ dμ, by Simpson's rule on a table of it.
+#[test]
+fn of_both_hemispheres_are_the_mean() {
+    let n = 2048;
+    let roughness = [0.3, 0.8];
+    let mus = nodes(Mu, n + 1, [0.0, 1.0]);
+    let table = bake(device(), &basis(&SPLIT_SUM, model("ggx"), &roughness, vec![mus]), Check::Sample(0));
+    let mean = bake(device(), &basis(&RHO_HH, model("ggx"), &roughness, vec![]), Check::All);
+    for (r, channel) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        let simpson: f64 = (0..=n)
+            .map(|k| {
+                let weight = if k == 0 || k == n {
+                    1.0
+                } else if k % 2 == 1 {
+                    4.0
+                } else {
+                    2.0
+                };
+                let mu = k as f64 / n as f64;
+                weight / (3 * n) as f64 * 2.0 * mu * f64::from(table.texel(r * (n + 1) + k)[channel])
+            })
+            .sum();
+        // The integrand turns at μ = α, thousands of steps wide: h⁴ is far below f32.
+        assert!((simpson - f64::from(mean.texel(r)[channel])).abs() < 2.0 * WARPED);
+    }
+}
+
+/// The definition converges to the warped rule as its cells shrink, as h² in θ (the lobe's width in
+/// cells decides when).
+#[test]
+fn by_the_grid_converge_to_the_warped_rule() {
+    let plan = basis(&SPLIT_SUM, model("ggx"), &[0.5, 0.8, 1.0], vec![axis(Mu, 8)]);
+    let warped = bake(device(), &plan, Check::All);
+    let errors: Vec<_> = [32, 64, 128]
+        .map(|theta| {
+            let plan = plan.clone().with_rule(Rule::Grid { theta, phi: 2 * theta }).unwrap();
+            largest_difference(&bake(device(), &plan, Check::Sample(0)), &warped)
+        })
+        .to_vec();
+    println!("{errors:?}");
+    assert!(errors[1] < errors[0] / 3.0 && errors[2] < errors[1] / 3.0 && errors[2] < 1e-3, "{errors:?}");
+}
+
+/// The binned mirror: a delta in one cell of the grid, whose sum is its reflectance exactly, wherever
+/// the mirror direction falls, edges and horizon included.
+#[test]
+fn of_the_binned_mirror_are_its_reflectance() {
+    for (theta, phi) in [(1, 2), (7, 6), (90, 360)] {
+        for evaluator in evaluators() {
+            let thetas = listed(ThetaI, &extreme_thetas());
+            for (quantity, axes) in [(&RHO_DH, vec![thetas]), (&RHO_HH, vec![])] {
+                let plan = basis(quantity, model("mirror"), &[], axes);
+                let binned = plan.with_rule(Rule::Grid { theta, phi }).unwrap();
+                let worst = bake(evaluator, &binned, Check::All).error.measured_max.unwrap();
+                // Evaluated at μ ≥ 2⁻²⁴, of which (1 − μ)⁵ makes five; and a few roundings.
+                assert!(worst <= 1e-6, "{theta} × {phi}: {worst}");
+            }
+        }
+    }
+}
+
+/// A scene's range may be one value, and a table one texel.
+#[test]
+fn of_one_texel_are_tables_too() {
+    for axes in [vec![], vec![Axis::listed(Variable::Roughness, vec![0.4]).unwrap()]] {
+        let roughness = axes.is_empty().then_some(0.4);
+        let plan = TablePlan::basis("one", &RHO_HH, model("ggx"), roughness, axes).unwrap();
+        let table = bake(device(), &plan, Check::All);
+        assert_eq!((table.texels(), table.error.texels_checked), (1, 1));
+    }
+}
+
+fn largest_difference(a: &Table, b: &Table) -> f32 {
+    a.values.iter().zip(&b.values).map(|(x, y)| (x - y).abs()).fold(0.0, f32::max)
+}
