@@ -52,7 +52,7 @@ impl Error {
         move |source| Self::Io { path, action, source }
     }
 
-    /// Puts the place in front of an input error: "scene.gltf: materials[2]: roughness …".
+    /// Puts the place in front of an input error: `scene.gltf: materials[2]: roughness …`.
     pub fn at(self, place: impl std::fmt::Display) -> Self {
         match self {
             Self::Input(message) => Self::Input(format!("{place}: {message}")),

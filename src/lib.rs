@@ -1,4 +1,64 @@
-//! **gonio**: a gonioreflectometer in compute shaders.
+//! **gonio**, a gonioreflectometer in compute shaders: BRDF values and cosine-weighted hemispherical
+//! integrals over dense (θ, φ) grids, computed by WGSL kernels and measured against an independent f64
+//! reference.
+//!
+//! # Architecture
+//!
+//! ```text
+//! scene (glTF | recipe) → plan → kernels → tables → files
+//!                          └→ reference (CPU, f64) → cross-check
+//! ```
+//!
+//! One abstraction carries everything: **table = quantity × axes × subject**. A DFG look-up table is
+//! [`split_sum`](quantity::SPLIT_SUM) of the GGX basis over (roughness, μ); a goniometer's sweep is
+//! [`brdf`](quantity::BRDF) over (θi, θe, δφ).
+//!
+//! | module | what it knows | what it must not know |
+//! |---|---|---|
+//! | [`scene`] | materials, and the ranges their parameters take | devices, resolutions |
+//! | [`plan`] | which tables, over which axes, by which rule: plain data | devices, files |
+//! | [`models`] | the parts and models: WGSL, and its f64 twin for the CPU path | the reference |
+//! | [`gpu`] | composing, validating and recording the kernels that a plan needs | scenes, files |
+//! | [`mod@reference`] | the textbook's formulas in f64, adaptive quadrature | everything else |
+//! | [`check`] | a table's texels against the reference | how they were computed |
+//! | [`bake`] | the order of it all: evaluate, look, check, write | how any of it is done |
+//! | [`table`], [`axis`], [`quantity`] | what a table is | where it came from |
+//! | `files` | EXR, NPY, PNG, the manifest; sets written all or nothing | physics |
+//!
+//! Three evaluations of each model exist, on purpose. The **shader** and its **twin** (same file name,
+//! same formulas, from angles, in f32 and f64) bake; the **reference** (`reference/`, written from the
+//! papers, from half vectors) judges both and shares nothing with them.
+//!
+//! A scene bakes **bases**, not colours: a model with unit weights over the roughness that occurs. Its
+//! components A and B are what F0 and F90 multiply, so a material is weights on bases,
+//! f = Σ (a·A + b·B), and the manifest has the weights.
+//!
+//! # Conventions
+//!
+//! n = +z; ωi and ωe are unit and point away from the surface; θ is the zenith angle and φ the azimuth,
+//! rad; μ = cos θ; f is in sr⁻¹, without the cosine; δφ = φe − φi − π ∈ (−π, π] is 0 in the mirror
+//! direction; α = roughness². Every evaluation takes μ = max(cos θ, 2⁻²⁴): f diverges where both
+//! directions graze.
+//!
+//! # Embedding
+//!
+//! [`gpu::Baker`] works on your `wgpu::Device`, records into your encoder and returns a buffer or a
+//! texture, without read-back:
+//!
+//! ```no_run
+//! use gonio::{axis::{Axis, Variable}, gpu::{Baker, TextureFormat}, models, plan::TablePlan, quantity, wgpu};
+//!
+//! fn dfg(device: &wgpu::Device, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder) -> gonio::Result<wgpu::Texture> {
+//!     let axes = vec![Axis::natural(Variable::Roughness, 64)?, Axis::natural(Variable::Mu, 64)?];
+//!     let table = TablePlan::basis("dfg", &quantity::SPLIT_SUM, models::find("ggx")?, None, axes)?;
+//!     Baker::new(device, queue).record_texture(encoder, &table, TextureFormat::Rg16Float)
+//! }
+//! ```
+//!
+//! # Features
+//!
+//! `scene` reads glTF and recipes, `files` writes tables, `cli` is the command and has both; it is the
+//! default. An embedder takes none of them: `default-features = false`.
 
 pub mod axis;
 pub mod bake;
@@ -21,4 +81,5 @@ pub mod scene;
 pub mod table;
 mod work;
 
+pub use error::{Error, Result};
 pub use wgpu;

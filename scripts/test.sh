@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# Runs the tests. Where no Vulkan driver is found on Debian or Ubuntu it installs software Vulkan first.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+has_vulkan() {
+    if [ -n "${VK_DRIVER_FILES:-${VK_ICD_FILENAMES:-}}" ]; then return 0; fi
+    compgen -G '/usr/share/vulkan/icd.d/*.json' >/dev/null || compgen -G '/etc/vulkan/icd.d/*.json' >/dev/null
+}
+
+if ! has_vulkan && command -v apt-get >/dev/null; then
+    echo "No Vulkan driver here: installing software Vulkan (mesa-vulkan-drivers, libvulkan1) with apt-get."
+    as_root=()
+    if [ "$(id -u)" != 0 ]; then as_root=(sudo); fi
+    "${as_root[@]}" apt-get update -q
+    "${as_root[@]}" apt-get install -q -y --no-install-recommends mesa-vulkan-drivers libvulkan1
+fi
+
+# The reference integrates adaptively: optimised, or it takes minutes.
+cargo test --release "$@"
