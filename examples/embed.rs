@@ -20,8 +20,8 @@ const COLUMNS: u32 = 11;
 const ROWS: u32 = 3;
 /// Pixels on a side of a sphere's cell: a row of an image is then a multiple of 256 bytes, as copies want.
 const CELL: u32 = 128;
-/// Radiance of the environment: below 1, so that a gain would show as well as a loss, and in sRGB exactly level
-/// 225 of 255, so that it takes 0.5 % either way to be another one.
+/// Radiance of the environment: below 1, so that a gain would show as well as a loss, and in sRGB exactly
+/// level 225 of 255, so that it takes 0.5 % either way to be another one.
 const ENVIRONMENT: f64 = 0.753;
 const SIZE: wgpu::Extent3d =
     wgpu::Extent3d { width: COLUMNS * CELL, height: ROWS * CELL, depth_or_array_layers: 1 };

@@ -111,7 +111,7 @@ pub struct Axis {
 }
 
 /// The longest axis: one row of it must fit a device buffer with room to spare.
-const MAX_COUNT: usize = 1 << 20;
+pub(crate) const MAX_COUNT: usize = 1 << 20;
 
 impl Axis {
     /// `count` samples over the natural range, at the natural positions (see [`Variable`]).

@@ -139,6 +139,18 @@ impl TablePlan {
         if swept && !self.lobes.iter().any(|lobe| lobe.model.has_roughness) {
             return refuse(format!("{} has no roughness to be an axis", self.subject));
         }
+        // Counts multiply beyond any usize.
+        let values = self.axes.iter().try_fold(self.channels.len(), |n, axis| n.checked_mul(axis.len()));
+        if values.is_none_or(|n| n > MAX_VALUES) {
+            return refuse(format!("it has more than {MAX_VALUES} values; take fewer samples"));
+        }
+        let factors = self.factors();
+        if factors > MAX_FACTORS {
+            return refuse(format!(
+                "its directions make {factors} pairs, and at most {MAX_FACTORS} fit every device; take fewer \
+                 samples of θ or μ, or a coarser grid"
+            ));
+        }
         if let Rule::Grid { theta, phi } = self.rule {
             let hemispherical = self.quantity.evaluation == Evaluation::Hemispherical;
             let most = if hemispherical { MAX_GRID_RHO_HH } else { MAX_GRID };
@@ -152,6 +164,21 @@ impl TablePlan {
         Ok(self)
     }
 
+    /// Factors that an evaluator holds at once: one for each pair of directions, given or of nodes.
+    fn factors(&self) -> usize {
+        /// No less than any warped rule has in one of its dimensions.
+        const NODES: usize = 64;
+        let count = |axis: Option<&Axis>| axis.map_or(1, Axis::len);
+        let nodes = if let Rule::Grid { theta, .. } = self.rule { theta } else { NODES };
+        match self.quantity.evaluation {
+            Evaluation::Value => {
+                count(self.axis(Variable::ThetaI)).saturating_mul(count(self.axis(Variable::ThetaE)))
+            }
+            Evaluation::Directional => count(self.axes.last()).saturating_mul(nodes),
+            Evaluation::Hemispherical => NODES.saturating_mul(nodes),
+        }
+    }
+
     /// Samples along each axis, slowest first.
     pub fn shape(&self) -> Vec<usize> {
         self.axes.iter().map(Axis::len).collect()
@@ -160,6 +187,12 @@ impl TablePlan {
     /// Number of texels.
     pub fn texels(&self) -> usize {
         self.shape().iter().product()
+    }
+
+    /// Whether it is of a model with unit weights. The subject's name does not tell: a material may be
+    /// named like a model.
+    pub fn is_basis(&self) -> bool {
+        matches!(&self.lobes[..], [lobe] if self.channels.iter().eq(lobe.model.components.iter().map(|c| c.name)))
     }
 
     /// The axis of a variable, if the table has it.
@@ -191,6 +224,12 @@ impl TablePlan {
 
 /// The tolerance where nobody names one.
 pub const DEFAULT_TOLERANCE: f64 = 1e-4;
+
+/// The most values of a table: 1 GiB as stored, and 2 more in f64 on the CPU path.
+const MAX_VALUES: usize = 1 << 28;
+
+/// The most factors of a table: 32 bytes each in the 128 MiB that every device binds.
+const MAX_FACTORS: usize = 1 << 22;
 
 /// The finest grid rule: one invocation's loop must stay below what every driver runs.
 pub(crate) const MAX_GRID: usize = 16_384;

@@ -168,7 +168,10 @@ pub fn within_tolerance(plan: &TablePlan, table: &Table) -> Result<()> {
     let place: Vec<_> = table.error.worst.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let remedy = match plan.rule {
         Rule::Grid { .. } => "take a finer grid or the warped rule",
-        Rule::Warped if table.precision == "f32" => "allow more, or bake with --device cpu, which is f64",
+        // No table is better than the f32 that it is stored in.
+        Rule::Warped if table.precision == "f32" && plan.tolerance > STORED_F32 => {
+            "allow more, or bake with --device cpu, which is f64"
+        }
         Rule::Warped => "allow more",
     };
     Err(Error::Promise(format!(
@@ -185,7 +188,7 @@ fn check_energy(plan: &TablePlan, table: &Table) -> Result<()> {
         return Ok(());
     }
     // A basis is weighed by F0 and F90 ≤ 1, so its components reflect together; RGB does not mix.
-    let together = plan.lobes.len() == 1 && plan.subject == plan.lobes[0].model.name;
+    let together = plan.is_basis();
     let bound: f64 = plan
         .lobes
         .iter()

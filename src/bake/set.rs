@@ -145,8 +145,8 @@ fn energy_warnings(plan: &Plan, tables: &[Table]) -> Vec<String> {
         .filter(|table| largest(table) > 1.0 + plan.tolerance as f32)
         .map(|table| {
             format!(
-                "{}: reflects up to {:.4} of what it receives; glTF 2.0's metallic-roughness adds its lobes \
-                 without conserving energy",
+                "{}: reflects up to {:.4} of what it receives; its lobes are added without conserving energy, as \
+                 glTF 2.0 has it",
                 table.subject,
                 largest(table)
             )

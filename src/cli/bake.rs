@@ -1,7 +1,7 @@
 //! `gonio bake`
 
 use super::watch::Watch;
-use super::{HEADING, print_json, warn};
+use super::{HEADING, print, print_json, tell, warn};
 use crate::bake::{Baked, Evaluator, Options, Stages, bake_set};
 use crate::check::Check;
 use crate::error::{Error, Result};
@@ -23,7 +23,7 @@ pub struct Args {
     out: Option<PathBuf>,
     /// The error that no table may exceed: absolute for integrals, relative for values [default: the
     /// recipe's, else 1e-4]
-    #[arg(long, value_name = "T", value_parser = tolerance)]
+    #[arg(long, value_name = "T", value_parser = tolerance, allow_negative_numbers = true)]
     tolerance: Option<f64>,
     /// auto: the best GPU, else software Vulkan, else the CPU path; cpu; or a part of an adapter's name
     #[arg(long, value_name = "NAME", default_value = "auto")]
@@ -96,8 +96,7 @@ pub fn run(args: &Args) -> Result<()> {
             return print_json(&plan_json(&plan));
         }
         plan.warnings.iter().for_each(|w| warn(w));
-        say.line(plan.to_string().trim_end());
-        return Ok(());
+        return say.line(plan.to_string().trim_end());
     }
     let Some(out) = &args.out else { return Err(Error::input("give --out DIR")) };
     plan.warnings.iter().for_each(|w| warn(w));
@@ -105,7 +104,7 @@ pub fn run(args: &Args) -> Result<()> {
     let start = Instant::now();
     let (evaluator, line) = Evaluator::choose(&args.device)?;
     stages.device = start.elapsed().as_secs_f64();
-    say.line(&format!("{HEADING}device{HEADING:#}  {line}"));
+    say.line(&format!("{HEADING}device{HEADING:#}  {line}"))?;
 
     let watch = Watch::new(2 * plan.tables.len());
     let mut formats = args.format.clone();
@@ -115,18 +114,18 @@ pub fn run(args: &Args) -> Result<()> {
     watch.finish();
     let baked = baked?;
     baked.warnings[plan.warnings.len()..].iter().for_each(|w| warn(w));
-    summary(&say, &plan, &baked);
-    say.line(&format!("{} tables in {}", baked.tables.len(), out.display()));
+    summary(&say, &plan, &baked)?;
+    say.line(&format!("{} tables in {}", baked.tables.len(), out.display()))?;
     if args.json { print_json(&baked.manifest) } else { Ok(()) }
 }
 
 /// One line a table: size, rule, error, time.
-fn summary(say: &Say, plan: &Plan, baked: &Baked) {
+fn summary(say: &Say, plan: &Plan, baked: &Baked) -> Result<()> {
     let width = baked.tables.iter().map(|t| t.name.chars().count()).max().unwrap_or(0);
     say.line(&format!(
         "{HEADING}{:width$}  {:>16}  {:>9}  {:>9}  {:>7}  {:>8}{HEADING:#}",
         "table", "texels", "max error", "rms", "checked", "time"
-    ));
+    ))?;
     for table in &baked.tables {
         let shape: Vec<_> = table.shape().iter().map(usize::to_string).collect();
         let shape = if shape.is_empty() { "1".into() } else { shape.join("×") };
@@ -138,7 +137,7 @@ fn summary(say: &Say, plan: &Plan, baked: &Baked) {
             number(table.error.measured_rms),
             table.error.texels_checked,
             1e3 * table.seconds,
-        ));
+        ))?;
     }
     let s = &baked.stages;
     let ms = |name: &str, seconds: f64| format!("{name} {:.0}", 1e3 * seconds);
@@ -152,10 +151,11 @@ fn summary(say: &Say, plan: &Plan, baked: &Baked) {
         ms("check", s.check),
         ms("write", s.write),
     ];
-    say.line(&format!("{HEADING}ms{HEADING:#}  {}", stages.join(", ")));
+    say.line(&format!("{HEADING}ms{HEADING:#}  {}", stages.join(", ")))?;
     if !plan.left_out.is_empty() {
-        say.line(&format!("{} things left out: see the manifest, or --dry-run", plan.left_out.len()));
+        say.line(&format!("{} things left out: see the manifest, or --dry-run", plan.left_out.len()))?;
     }
+    Ok(())
 }
 
 /// The plan for a machine.
@@ -190,7 +190,11 @@ struct Say {
 }
 
 impl Say {
-    fn line(&self, text: &str) {
-        if self.json { anstream::eprintln!("{text}") } else { anstream::println!("{text}") }
+    fn line(&self, text: &str) -> Result<()> {
+        if self.json {
+            tell(text);
+            return Ok(());
+        }
+        print(text)
     }
 }

@@ -1,17 +1,24 @@
 //! `gonio devices`
 
-use super::{HEADING, print_json};
+use super::{HEADING, print, print_json};
 use crate::error::Result;
 use crate::gpu::{self, Adapter};
-use anstream::println;
 use serde_json::json;
 
 #[derive(clap::Args)]
+#[command(after_help = AFTER_HELP)]
 pub struct Args {
     /// Print JSON on stdout
     #[arg(long)]
     json: bool,
 }
+
+const AFTER_HELP: &str = "\
+Examples:
+  gonio devices
+  gonio bake scene.gltf --out tables --device llvmpipe
+
+Exit codes: 0 success, 2 the list cannot be written";
 
 pub fn run(args: &Args) -> Result<()> {
     let adapters = gpu::adapters();
@@ -31,12 +38,12 @@ pub fn run(args: &Args) -> Result<()> {
     for (k, adapter) in adapters.iter().enumerate() {
         let mark = if k == 0 { " (auto)" } else { "" };
         let (kind, backend, driver) = (adapter.kind(), adapter.info.backend, adapter.driver());
-        println!("{HEADING}{}{HEADING:#}{mark}\n    {kind}, {backend}, {driver}", adapter.info.name);
+        print(&format!("{HEADING}{}{HEADING:#}{mark}\n    {kind}, {backend}, {driver}", adapter.info.name))?;
     }
     if adapters.is_empty() {
-        println!("no GPU and no Vulkan driver. {}", gpu::INSTALL);
+        print(&format!("no GPU and no Vulkan driver. {}", gpu::INSTALL))?;
     }
     let mark = if adapters.is_empty() { " (auto)" } else { "" };
-    println!("{HEADING}cpu{HEADING:#}{mark}\n    the CPU path, in f64 on all cores");
+    print(&format!("{HEADING}cpu{HEADING:#}{mark}\n    the CPU path, in f64 on all cores"))?;
     Ok(())
 }

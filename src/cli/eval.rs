@@ -1,15 +1,15 @@
 //! `gonio eval`
 
-use super::{HEADING, print_json};
+use super::{HEADING, print, print_json};
 use crate::axis::{Axis, Variable};
 use crate::bake::{Evaluator, Stages, Unobserved};
 use crate::check::{self, Check};
 use crate::error::{Error, Result};
 use crate::gpu::DeviceChoice;
+use crate::models;
 use crate::plan::TablePlan;
 use crate::quantity::BRDF;
 use crate::scene;
-use anstream::println;
 use serde_json::json;
 use std::f64::consts::{PI, TAU};
 use std::path::PathBuf;
@@ -30,16 +30,16 @@ pub struct Args {
     #[arg(long, value_name = "KEY=VALUE", requires = "model")]
     set: Vec<String>,
     /// Zenith angle of incidence: radians, or degrees as 45deg
-    #[arg(long, value_name = "ANGLE", value_parser = angle)]
+    #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true)]
     theta_i: f64,
     /// Azimuth of incidence
-    #[arg(long, value_name = "ANGLE", value_parser = angle, default_value = "0", allow_negative_numbers = true)]
+    #[arg(long, value_name = "ANGLE", value_parser = angle, default_value = "0", allow_hyphen_values = true)]
     phi_i: f64,
     /// Zenith angle of exitance
-    #[arg(long, value_name = "ANGLE", value_parser = angle)]
+    #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true)]
     theta_e: f64,
     /// Azimuth of exitance [default: opposite to that of incidence, where a mirror reflects]
-    #[arg(long, value_name = "ANGLE", value_parser = angle, allow_negative_numbers = true)]
+    #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true)]
     phi_e: Option<f64>,
     /// auto, cpu, or a part of an adapter's name
     #[arg(long, value_name = "NAME", default_value = "auto")]
@@ -53,7 +53,9 @@ const AFTER_HELP: &str = "\
 Examples:
   gonio eval --model ggx --set roughness=0.3 --theta-i 45deg --theta-e 45deg
   gonio eval --model ggx --set alpha=0.1 --set f0=[1.0,0.78,0.34] --theta-i 0.5 --theta-e 0.5 --phi-e 3.0
-  gonio eval recipe.toml --material gold --theta-i 30deg --theta-e 60deg";
+  gonio eval recipe.toml --material gold --theta-i 30deg --theta-e 60deg
+
+Exit codes: 0 success, 2 bad input, 3 no device";
 
 fn angle(text: &str) -> Result<f64, String> {
     let (number, scale) = match text.strip_suffix("deg") {
@@ -93,11 +95,10 @@ pub fn run(args: &Args) -> Result<()> {
         words.join("  ")
     };
     let values: Vec<_> = table.values.iter().map(|&v| f64::from(v)).collect();
-    println!("{HEADING}f({}){HEADING:#} in sr⁻¹, δφ = {delta_phi:.6} rad", plan.subject);
-    println!("device      {}    {line}", show(&values));
-    println!("reference   {}    f64", show(&reference));
-    println!("difference  {:.1e} relative", difference.unwrap_or(f64::NAN));
-    Ok(())
+    print(&format!("{HEADING}f({}){HEADING:#} in sr⁻¹, δφ = {delta_phi:.6} rad", plan.subject))?;
+    print(&format!("device      {}    {line}", show(&values)))?;
+    print(&format!("reference   {}    f64", show(&reference)))?;
+    print(&format!("difference  {:.1e} relative", difference.unwrap_or(f64::NAN)))
 }
 
 /// What to evaluate: a material, or a model with parameters, in a recipe's own words.
@@ -105,6 +106,7 @@ fn subject(args: &Args, axes: Vec<Axis>) -> Result<TablePlan> {
     let (scene, name) = match (&args.scene, &args.material, &args.model) {
         (Some(path), Some(name), _) => (scene::read(path)?, name.clone()),
         (_, _, Some(model)) => {
+            let model = models::find(model)?.name;
             let mut lobe = format!("model = \"{model}\"");
             for set in &args.set {
                 let (key, value) = set.split_once('=').ok_or_else(|| {
@@ -113,7 +115,7 @@ fn subject(args: &Args, axes: Vec<Axis>) -> Result<TablePlan> {
                 lobe += &format!(", {key} = {value}");
             }
             let text = format!("[materials.{model}]\nlobes = [{{ {lobe} }}]\n");
-            (scene::parse_recipe("--set".as_ref(), text.as_bytes())?, model.clone())
+            (scene::parse_recipe("--set".as_ref(), text.as_bytes())?, model.to_owned())
         }
         _ => return Err(Error::input("give --model NAME, or a SCENE and --material NAME")),
     };

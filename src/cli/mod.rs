@@ -6,9 +6,9 @@ mod eval;
 mod watch;
 
 use crate::error::{Error, Result};
-use anstream::eprintln;
 use anstyle::{AnsiColor, Style};
 use clap::{Parser, Subcommand};
+use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
 #[derive(Parser)]
@@ -53,7 +53,7 @@ pub fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("{ERROR}error:{ERROR:#} {error}");
+            tell(&format!("{ERROR}error:{ERROR:#} {error}"));
             ExitCode::from(exit_code(&error))
         }
     }
@@ -70,13 +70,25 @@ fn exit_code(error: &Error) -> u8 {
     }
 }
 
+/// Prints a line on stderr; where nobody can be told, nobody is.
+fn tell(text: &str) {
+    let _ = writeln!(anstream::stderr(), "{text}");
+}
+
 fn warn(message: &str) {
-    eprintln!("{WARNING}warning:{WARNING:#} {message}");
+    tell(&format!("{WARNING}warning:{WARNING:#} {message}"));
 }
 
 /// Prints a value as JSON on stdout.
 fn print_json(value: &impl serde::Serialize) -> Result<()> {
     let text = serde_json::to_string_pretty(value).map_err(|e| Error::Internal(e.to_string()))?;
-    anstream::println!("{text}");
-    Ok(())
+    print(&text)
+}
+
+/// Prints a line on stdout. Whoever reads it may stop at any time.
+fn print(text: &str) -> Result<()> {
+    match writeln!(anstream::stdout(), "{text}") {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::io("write", "stdout")(error)),
+        _ => Ok(()),
+    }
 }

@@ -138,11 +138,13 @@ impl Device {
             DeviceChoice::Named(name) => {
                 let adapters = adapters();
                 let wanted = name.to_lowercase();
-                let found = adapters.iter().find(|a| a.info.name.to_lowercase().contains(&wanted));
+                // Every name holds "".
+                let fits = |a: &&Adapter| !wanted.is_empty() && a.info.name.to_lowercase().contains(&wanted);
+                let found = adapters.iter().find(fits);
                 let adapter = found.ok_or_else(|| {
                     let names: Vec<_> = adapters.iter().map(|a| format!("\"{}\"", a.info.name)).collect();
                     Error::Device(if names.is_empty() {
-                        format!("no adapter is named \"{name}\": there is none at all. {INSTALL}")
+                        format!("no adapter is named \"{name}\": there is none at all. {INSTALL} The CPU path, --device cpu, needs none")
                     } else {
                         format!(
                             "no adapter is named \"{name}\"; there are {}, auto and cpu",
@@ -188,7 +190,7 @@ impl Device {
 
 /// How to get a software device.
 pub const INSTALL: &str = "Install a Vulkan driver; on Debian, software Vulkan is `apt-get install \
-                           mesa-vulkan-drivers libvulkan1`. `--device cpu` needs none";
+                           mesa-vulkan-drivers libvulkan1`.";
 
 impl fmt::Display for Device {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -7,6 +7,7 @@ use crate::models::{self, ALPHA_MIN_VALUE, MODELS, Model};
 use crate::quantity::{self, BRDF, Evaluation, QUANTITIES, Quantity, RHO_DH};
 use crate::scene::{Distribution, LeftOut, Material, Scene, SubjectRequest, TableRequest, Weights};
 use serde::Serialize;
+use std::collections::HashSet;
 use std::fmt;
 
 /// Everything that a scene requires, and what it does not.
@@ -110,8 +111,12 @@ impl Plan {
             left_out: scene.left_out.clone(),
             warnings: scene.warnings.clone(),
         };
+        // Names are names of files, and some file systems ignore case.
+        let given = scene.tables.iter().filter_map(|request| request.name.as_deref());
+        let mut taken: HashSet<_> = given.map(str::to_lowercase).collect();
         if scene.tables.is_empty() {
             plan.require_defaults(&materials, tolerance)?;
+            plan.tables.iter_mut().for_each(|table| table.name = free_name(&table.name, &mut taken));
         } else {
             for request in &scene.tables {
                 let wanted = match (&request.subject, &selection.material) {
@@ -120,7 +125,10 @@ impl Plan {
                     (_, None) => true,
                 };
                 if wanted {
-                    let table = requested(request, scene, tolerance).map_err(|e| e.at(&request.place))?;
+                    let mut table = requested(request, scene, tolerance).map_err(|e| e.at(&request.place))?;
+                    if request.name.is_none() {
+                        table.name = free_name(&table.name, &mut taken);
+                    }
                     plan.tables.push(table);
                 }
             }
@@ -131,11 +139,9 @@ impl Plan {
                 plan.leave_out(other.name, "the selection asks for another quantity");
             }
         }
-        for request in &scene.tables {
-            if let SubjectRequest::Basis { model, .. } = &request.subject {
-                plan.require_basis(models::find(model)?, None);
-            }
-        }
+        let bases: Vec<_> =
+            plan.tables.iter().filter(|table| table.is_basis()).map(|t| t.lobes[0].model).collect();
+        bases.into_iter().for_each(|model| plan.require_basis(model, None));
         plan.describe(&materials)?;
         for model in MODELS {
             if !plan.bases.iter().any(|basis| basis.model == model.name) {
@@ -265,8 +271,9 @@ impl Plan {
                 };
                 plan.rho_bound += largest * model.rho_bound;
             }
-            let serves = |t: &&TablePlan| {
-                t.subject == material.name || material.lobes.iter().any(|lobe| lobe.model == t.subject)
+            let serves = |t: &&TablePlan| match t.is_basis() {
+                true => material.lobes.iter().any(|lobe| lobe.model == t.subject),
+                false => t.subject == material.name,
             };
             plan.tables = self.tables.iter().filter(serves).map(|t| t.name.clone()).collect();
             self.materials.push(plan);
@@ -308,6 +315,13 @@ fn natural_axis(quantity: &Quantity, variable: Variable) -> Result<Axis> {
         _ => THETA,
     };
     Axis::natural(variable, count)
+}
+
+/// `name`, with a number if another table has it.
+fn free_name(name: &str, taken: &mut HashSet<String>) -> String {
+    let numbered = (2..).map(|k| format!("{name}-{k}"));
+    let mut names = std::iter::once(name.to_owned()).chain(numbered);
+    names.find(|name| taken.insert(name.to_lowercase())).unwrap_or_default()
 }
 
 /// A table that a recipe asks for.

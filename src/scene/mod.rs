@@ -12,8 +12,11 @@ pub use distribution::Distribution;
 pub use recipe::parse as parse_recipe;
 
 use crate::axis::Axis;
+#[cfg(feature = "scene")]
 use crate::error::{Error, Result};
-use std::path::{Path, PathBuf};
+#[cfg(feature = "scene")]
+use std::path::Path;
+use std::path::PathBuf;
 
 /// Everything that a scene file or recipe says about reflection.
 #[derive(Debug, Clone, PartialEq, Default)]

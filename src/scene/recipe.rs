@@ -3,7 +3,7 @@
 mod document;
 
 use super::{Distribution, Material, MaterialLobe, Scene, SubjectRequest, TableRequest, Weights};
-use crate::axis::{Axis, Mapping, Positions, Variable};
+use crate::axis::{Axis, MAX_COUNT, Mapping, Positions, Variable};
 use crate::error::{Error, Result};
 use crate::models::{Component, MODELS};
 use crate::plan::MAX_GRID;
@@ -250,7 +250,7 @@ fn grid(item: Item) -> Result<[usize; 2]> {
 fn axis(item: Item, variable: Variable) -> Result<Axis> {
     let at = |error: Error| error.at(item.place());
     if !item.is_table() {
-        return Axis::natural(variable, item.count(usize::MAX)?).map_err(at);
+        return Axis::natural(variable, item.count(MAX_COUNT)?).map_err(at);
     }
     let fields = item.table(&["count", "range", "positions", "mapping", "values"])?;
     if let Some(values) = fields.get("values") {
@@ -262,7 +262,7 @@ fn axis(item: Item, variable: Variable) -> Result<Axis> {
         let values = values.items()?.into_iter().map(|value| value.number()).collect::<Result<_>>()?;
         return Axis::listed(variable, values).map_err(at);
     }
-    let count = fields.require("count")?.count(usize::MAX)?;
+    let count = fields.require("count")?.count(MAX_COUNT)?;
     let range = match fields.get("range") {
         None => variable.natural_range(),
         Some(item) => {
