@@ -2,6 +2,7 @@
 
 use crate::models::ALPHA_MIN_INTEGRAL;
 use crate::plan::{Lobe, TablePlan};
+use crate::slopes::{TILE_ALPHAS, TILE_COLUMNS};
 use crate::work::{Inner, Work, WorkKind};
 use rayon::prelude::*;
 
@@ -34,8 +35,7 @@ pub(crate) fn evaluate<E: Send>(
                     let mut sum = [0.0; 2];
                     for (k, weight) in outer.iter().enumerate() {
                         let at = texel * outer.len() + k;
-                        let alpha = work.alphas[at / inner.count()];
-                        let [a, b] = integrate(inner, lobe, at % inner.count(), alpha);
+                        let [a, b] = integrate(&work, inner, lobe, at / inner.count(), at % inner.count());
                         sum = [sum[0] + weight * a, sum[1] + weight * b];
                     }
                     add(out, lobe, sum);
@@ -53,21 +53,23 @@ fn add(out: &mut [f64], lobe: &Lobe, [a, b]: [f64; 2]) {
     }
 }
 
-/// The inner integral `k` at α.
-fn integrate(inner: &Inner, lobe: &Lobe, k: usize, alpha: f64) -> [f64; 2] {
+/// The inner integral `k` of a row of α.
+fn integrate(work: &Work, inner: &Inner, lobe: &Lobe, row: usize, k: usize) -> [f64; 2] {
+    let alpha = work.alphas[row];
     let mut sum = [0.0; 2];
     let mut add = |weight: f64, [a, b]: [f64; 2]| sum = [sum[0] + weight * a, sum[1] + weight * b];
     match inner {
-        Inner::Slopes { slopes, mus, .. } if alpha < ALPHA_MIN_INTEGRAL => {
-            return (slopes.mirror_limit)(mus[k]);
-        }
-        Inner::Slopes { slopes, mus, azimuths, nodes } => {
-            let per_column = azimuths.len() / mus.len();
-            for &[c, t_max, t_max_inverse, weight] in &azimuths[k * per_column..(k + 1) * per_column] {
-                let end = (slopes.end)(t_max, alpha);
-                for node in nodes {
-                    let f = (slopes.integrand)(end * node.x, [c, t_max, t_max_inverse], mus[k], alpha);
-                    add(weight * end * node.weight, f);
+        Inner::Slopes(work) if alpha < ALPHA_MIN_INTEGRAL => return (work.slopes.mirror_limit)(work.mus[k]),
+        Inner::Slopes(work) => {
+            let mu = work.mus[k];
+            let sides = work.columns[k].iter().zip(work.tile(row / TILE_ALPHAS, k / TILE_COLUMNS));
+            for (azimuths, nodes) in sides {
+                for &[c, t_max, t_max_inverse, weight] in &work.azimuths[azimuths.clone()] {
+                    let end = (work.slopes.end)(t_max, alpha);
+                    for node in &work.nodes[nodes.clone()] {
+                        let f = (work.slopes.integrand)(end * node.x, [c, t_max, t_max_inverse], mu, alpha);
+                        add(weight * end * node.weight, f);
+                    }
                 }
             }
         }

@@ -78,6 +78,7 @@ pub mod quadrature;
 pub mod quantity;
 pub mod reference;
 pub mod scene;
+mod slopes;
 pub mod table;
 mod work;
 

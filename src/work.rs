@@ -2,11 +2,12 @@
 //! in f64. The device gets them rounded to f32, the CPU path as they are.
 
 use crate::axis::Variable;
-use crate::models::{Integral, Slopes};
+use crate::models::Integral;
 use crate::pair::{Azimuth, MU_MIN, Pair};
 use crate::plan::{Lobe, Rule, TablePlan};
-use crate::quadrature::{Node, gauss_legendre, midpoint};
+use crate::quadrature::{gauss_legendre, midpoint};
 use crate::quantity::Evaluation;
+use crate::slopes::SlopeWork;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The work of one lobe.
@@ -25,19 +26,14 @@ pub(crate) enum WorkKind {
 
 /// The inner integrals: one result for each (α, k), k counting directions and outer nodes.
 pub(crate) enum Inner {
-    /// In slopes: for each μ, `azimuths` entries of (c, t_max, 1/t_max, weight).
-    Slopes { slopes: &'static Slopes, mus: Vec<f64>, azimuths: Vec<[f64; 4]>, nodes: Vec<Node> },
+    /// In slopes of ωm.
+    Slopes(SlopeWork),
     /// Over δφ, for each pair of θ.
     Product { pairs: Vec<Pair>, azimuths: Vec<Azimuth> },
     /// In closed form, for each μ.
     Analytic { directional: fn(f64, f64) -> [f64; 2], mus: Vec<f64> },
 }
 
-/// Nodes of the warped rule. They hold 6e-7 over α ∈ [1e-12, 1] and μ ∈ [2⁻²⁴, 1] in f32, which is
-/// f32's own floor; tests/convergence.rs shows it.
-const SLOPE_NODES: usize = 40;
-/// Azimuths of ωm on ωe's side, and on the other.
-const SLOPE_AZIMUTHS: [usize; 2] = [40, 24];
 /// θe and δφ of lobes as wide as the hemisphere.
 const SMOOTH_NODES: [usize; 2] = [48, 64];
 /// μ of ρ_hh, in √μ.
@@ -67,7 +63,8 @@ impl Inner {
     /// Results for each α.
     pub fn count(&self) -> usize {
         match self {
-            Self::Slopes { mus, .. } | Self::Analytic { mus, .. } => mus.len(),
+            Self::Slopes(work) => work.mus.len(),
+            Self::Analytic { mus, .. } => mus.len(),
             Self::Product { pairs, .. } => pairs.len(),
         }
     }
@@ -75,7 +72,7 @@ impl Inner {
     /// Evaluations for each result.
     pub fn cost(&self) -> usize {
         match self {
-            Self::Slopes { mus, azimuths, nodes, .. } => azimuths.len() / mus.len() * nodes.len(),
+            Self::Slopes(work) => work.largest_cost(),
             Self::Product { azimuths, .. } => azimuths.len(),
             Self::Analytic { .. } => 1,
         }
@@ -112,13 +109,9 @@ fn integrals(table: &TablePlan, lobe: &Lobe, thetas: &[f64], weights: &[f64]) ->
             smooth(gauss_cells(SMOOTH_NODES[0]), grid_azimuths(2 * SMOOTH_NODES[1]))
         }
         (Rule::Warped, Integral::Slopes(slopes)) => {
-            let mus: Vec<_> = thetas.iter().map(|theta| theta.cos().max(MU_MIN)).collect();
-            let azimuths = mus.iter().flat_map(|&mu| slope_azimuths(mu)).collect();
-            let nodes = gauss_legendre(SLOPE_NODES);
-            WorkKind::Integrals {
-                inner: Inner::Slopes { slopes, mus, azimuths, nodes },
-                outer: weights.to_vec(),
-            }
+            let mus = thetas.iter().map(|theta| theta.cos().max(MU_MIN)).collect();
+            let work = SlopeWork::new(slopes, mus, &table.alphas(lobe), table.tolerance);
+            WorkKind::Integrals { inner: Inner::Slopes(work), outer: weights.to_vec() }
         }
         (Rule::Warped, Integral::Delta(directional)) => WorkKind::Integrals {
             inner: Inner::Analytic { directional, mus: thetas.iter().map(|theta| theta.cos()).collect() },
@@ -181,25 +174,4 @@ fn grid_azimuths(n: usize) -> Vec<Azimuth> {
             Azimuth { weight, bin: if k == 0 { 1.0 / weight } else { 0.0 }, ..Azimuth::new(PI * node.x) }
         })
         .collect()
-}
-
-/// Azimuths φ = π/2 ∓ d sinh u of ωm from ωe's, u ∈ [0, asinh(π/2d)]: the horizon turns within μ of
-/// φ = π/2. c = tan θe cos φ; t_max = c + √(c² + 1), without cancellation where c < 0.
-fn slope_azimuths(mu: f64) -> Vec<[f64; 4]> {
-    /// Below it nothing is gained: the turn is then narrower than what it contributes.
-    const D_MIN: f64 = 1e-3;
-    let tan = ((1.0 - mu) * (1.0 + mu)).sqrt() / mu;
-    let d = mu.max(D_MIN);
-    let u_max = (FRAC_PI_2 / d).asinh();
-    let side = |n: usize, sign: f64| {
-        gauss_legendre(n).into_iter().map(move |node| {
-            let u = u_max * node.x;
-            let c = sign * tan * (d * u.sinh()).sin();
-            let root = c.hypot(1.0);
-            let t_max = if c > 0.0 { c + root } else { 1.0 / (root - c) };
-            // dφ/π: both halves of the azimuth, over 2π
-            [c, t_max, 1.0 / t_max, node.weight * u_max * d * u.cosh() / PI]
-        })
-    };
-    side(SLOPE_AZIMUTHS[0], 1.0).chain(side(SLOPE_AZIMUTHS[1], -1.0)).collect()
 }

@@ -1,11 +1,16 @@
-// Hemispherical integrals in slopes of ωm: one invocation a (roughness, direction), Gauss–Legendre
-// in r and in azimuth. The host tabulates the azimuths of every direction in f64.
+// Hemispherical integrals in slopes of ωm, Gauss–Legendre in r and in azimuth: one invocation takes
+// one direction and four α. The host tabulates the azimuths of every direction in f64, and how many
+// nodes each tile of texels takes.
 
-@group(0) @binding(1) var<storage, read> alphas: array<real>;
+@group(0) @binding(1) var<storage, read> alphas: array<real4>;          // padded to whole fours
 @group(0) @binding(2) var<storage, read> mus: array<real>;
-@group(0) @binding(3) var<storage, read> azimuths: array<SlopeAzimuth>; // job.azimuths for each column
-@group(0) @binding(4) var<storage, read> nodes: array<real2>;           // (r in [0, 1], weight)
-@group(0) @binding(5) var<storage, read_write> raw: array<real2>;
+@group(0) @binding(3) var<storage, read> columns: array<vec4u>;         // first azimuth and count, for each side
+@group(0) @binding(4) var<storage, read> tiles: array<vec4u>;           // first node and count, for each side
+@group(0) @binding(5) var<storage, read> azimuths: array<SlopeAzimuth>;
+@group(0) @binding(6) var<storage, read> nodes: array<real2>;           // (r in [0, 1], weight)
+@group(0) @binding(7) var<storage, read_write> raw: array<real2>;
+
+const TILE_COLUMNS = 8u;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -14,21 +19,37 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let column = invocation % job.columns;
-    let alpha = alphas[invocation / job.columns];
+    let row = invocation / job.columns;
+    let alpha = alphas[row];
     let mu = mus[column];
-    if alpha == 0.0 {
-        raw[invocation - job.base] = mirror_limit(mu);
-        return;
+    let e = masked(mu, alpha);
+    let azimuth = columns[column];
+    let tile = tiles[row * ((job.columns + TILE_COLUMNS - 1u) / TILE_COLUMNS) + column / TILE_COLUMNS];
+    let near = side(azimuth.x, azimuth.y, tile.x, tile.y, e, alpha);
+    let far = side(azimuth.z, azimuth.w, tile.z, tile.w, e, alpha);
+    let grazing = near.grazing + far.grazing;
+    let rest = near.all + far.all - grazing;
+    for (var k = 0u; k < min(4u, job.nodes - 4u * row); k++) {
+        let result = select(real2(rest[k], grazing[k]), mirror_limit(mu), alpha[k] == 0.0);
+        raw[(4u * row + k) * job.columns + column - job.base] = result;
     }
-    var sum = real2();
-    for (var k = 0u; k < job.azimuths; k++) {
-        let azimuth = azimuths[column * job.azimuths + k];
+}
+
+/// One half of the azimuths: they differ in how many nodes they take.
+fn side(first: u32, count: u32, first_node: u32, node_count: u32, e: Masked, alpha: real4) -> Slope {
+    var sum = Slope();
+    for (var k = first; k < first + count; k++) {
+        let azimuth = azimuths[k];
         let end = ndf_map_end(azimuth.y, alpha);
-        var inner = real2();
-        for (var j = 0u; j < job.nodes; j++) {
-            inner += nodes[j].y * slope_integrand(end * nodes[j].x, azimuth, mu, alpha);
+        var inner = Slope();
+        for (var j = first_node; j < first_node + node_count; j++) {
+            let node = nodes[j];
+            let value = slope_integrand(end * node.x, azimuth, e, alpha);
+            inner.all += node.y * value.all;
+            inner.grazing += node.y * value.grazing;
         }
-        sum += (azimuth.w * end) * inner;
+        sum.all += azimuth.w * end * inner.all;
+        sum.grazing += azimuth.w * end * inner.grazing;
     }
-    raw[invocation - job.base] = sum;
+    return sum;
 }

@@ -10,21 +10,25 @@ fn lobe(p: Pair, a: Azimuth, alpha: real) -> real2 {
 //     ρ = 1/2π ∫dφ ∫ F · G2 · (ωe·ωm)/(μe cos θm) · w dv,   (ωe·ωm)/(μe cos θm) = 1 + c t
 // up to the horizon of ωi, t_max = c + √(c² + 1), where
 //     cos θi = cos²θm μe (t_max − t)(t + 1/t_max)
-// without cancellation.
+// without cancellation. Four α share one azimuth; with t = p/m nothing is divided but once.
 
 /// One azimuth of ωm: (c, t_max, 1/t_max, weight).
 alias SlopeAzimuth = vec4<real>;
 
-/// The integrand at r, times w dv/dr. `visibility` is G2/(4 μi μe).
-fn slope_integrand(r: real, azimuth: SlopeAzimuth, mu_e: real, alpha: real) -> real2 {
+/// The integrand at r, times w dv/dr: without Fresnel, and its part that F90 weighs.
+struct Slope {
+    all: real4,
+    grazing: real4,
+}
+
+fn slope_integrand(r: real4, azimuth: SlopeAzimuth, e: Masked, alpha: real4) -> Slope {
     let map = ndf_map(r, alpha);
-    let t = map.x;
-    let cos2_m = 1.0 / (1.0 + t * t);
-    let projected = 1.0 + azimuth.x * t;
-    let mu_i = max(cos2_m * mu_e * (azimuth.y - t) * (t + azimuth.z), 0.0);
-    let g2 = 4.0 * mu_i * mu_e * visibility(mu_i, mu_e, alpha);
-    let c = min(mu_e * projected * sqrt(cos2_m), 1.0);
-    return fresnel(c, 1.0 - c) * (g2 * projected * map.y);
+    let projected = map.m + azimuth.x * map.p;
+    let sec2 = map.m * map.m + map.p * map.p;
+    let mu_i = e.mu * max((azimuth.y * map.m - map.p) * (map.p + azimuth.z * map.m), real4());
+    let all = 2.0 * e.mu * mu_i * projected * map.weight / (masking(mu_i, sec2, e) * map.m * map.divisor);
+    let c = min(e.mu * projected * inverseSqrt(sec2), real4(1.0));
+    return Slope(all, all * fresnel_grazing(1.0 - c));
 }
 
 /// α → 0 at fixed μ: the ideal mirror's.

@@ -9,3 +9,22 @@ fn smith_root(mu: real, alpha: real) -> real {
 fn visibility(mu_i: real, mu_e: real, alpha: real) -> real {
     return 0.5 / (mu_i * smith_root(mu_e, alpha) + mu_e * smith_root(mu_i, alpha));
 }
+
+/// What `masking` needs of the fixed direction.
+struct Masked {
+    mu: real,
+    root: real4,
+    a2: real4,
+    b2: real4,
+}
+
+fn masked(mu: real, alpha: real4) -> Masked {
+    let a2 = alpha * alpha;
+    let b2 = 1.0 - a2;
+    return Masked(mu, sqrt(a2 + b2 * (mu * mu)), a2, b2);
+}
+
+/// G2 = x / masking(x, y) · 2 μe, for μi = x/y: no division until the end.
+fn masking(x: real4, y: real4, e: Masked) -> real4 {
+    return x * e.root + e.mu * sqrt(e.a2 * y * y + e.b2 * x * x);
+}

@@ -4,8 +4,10 @@ use super::compose::{Kernel, compose, validate};
 use super::stage::{Job, Stage, Stages};
 use crate::error::{Error, Result};
 use crate::models::Model;
+use crate::axis::Variable;
 use crate::plan::TablePlan;
 use crate::quantity::Evaluation;
+use crate::slopes::TILE_ALPHAS;
 use crate::work::Work;
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -59,7 +61,7 @@ pub(super) struct Tile {
 /// The shape of a table's result: what a tile is a range of.
 #[derive(Clone, Copy)]
 pub(super) struct Layout {
-    /// Rows of a table of values, texels of a table of integrals.
+    /// Rows of azimuths in a table of values, rows of α in a table of integrals.
     pub units: usize,
     /// Texels of a unit, and with its padding.
     pub texels: usize,
@@ -80,7 +82,9 @@ impl Layout {
     pub fn new(table: &TablePlan) -> Self {
         let channels = table.channels.len();
         if !is_value(table) {
-            return Self { units: table.texels(), texels: 1, padded: 1, channels };
+            let units = table.axis(Variable::Roughness).map_or(1, |axis| axis.len());
+            let texels = table.texels() / units;
+            return Self { units, texels, padded: texels, channels };
         }
         let texels = table.axes.last().map_or(1, |axis| axis.len());
         Self { units: table.texels() / texels, texels, padded: texels.next_multiple_of(4), channels }
@@ -94,7 +98,8 @@ impl Layout {
     /// The ranges of units that fit a tile each, by size alone: results must not depend on speed.
     pub fn tiles(&self, stages: &[Stages]) -> Vec<Range<usize>> {
         let raw = stages.iter().map(Stages::raw_bytes_per_unit).max().unwrap_or(0);
-        let per_tile = (TILE_BYTES / raw.max(self.bytes(1))).max(1);
+        // Whole groups of what an invocation takes together.
+        let per_tile = (TILE_BYTES / raw.max(self.bytes(1)) / TILE_ALPHAS * TILE_ALPHAS).max(TILE_ALPHAS);
         (0..self.units).step_by(per_tile).map(|first| first..(first + per_tile).min(self.units)).collect()
     }
 }
@@ -157,34 +162,35 @@ impl Baker {
     pub(super) fn tile(&self, layout: &Layout, stages: &[Stages], units: Range<usize>) -> Result<Tile> {
         let mut tile = Tile { buffer: self.output(layout.bytes(units.len())), steps: Vec::new() };
         for Stages { inner, sum } in stages {
-            let range = units.start * inner.per_unit..units.end * inner.per_unit;
             match sum {
-                None => self.steps(inner, &[], range, &tile.buffer, &mut tile.steps)?,
+                None => self.steps(inner, &[], &units, &tile.buffer, &mut tile.steps)?,
                 Some(sum) => {
-                    let raw = self.output(range.len() * RAW_BYTES);
-                    self.steps(inner, &[], range, &raw, &mut tile.steps)?;
-                    self.steps(sum, &[&raw], units.clone(), &tile.buffer, &mut tile.steps)?;
+                    let raw = self.output(units.len() * inner.per_unit * RAW_BYTES);
+                    self.steps(inner, &[], &units, &raw, &mut tile.steps)?;
+                    self.steps(sum, &[&raw], &units, &tile.buffer, &mut tile.steps)?;
                 }
             }
         }
         Ok(tile)
     }
 
-    /// The dispatches of a stage over `range` of its invocations: as many as the cost asks for.
+    /// The dispatches of a stage over some units: as many as the cost asks for.
     fn steps(
         &self,
         stage: &Stage,
         more_inputs: &[&wgpu::Buffer],
-        range: Range<usize>,
+        units: &Range<usize>,
         output: &wgpu::Buffer,
         steps: &mut Vec<Step>,
     ) -> Result<()> {
         let pipeline = self.pipeline(stage.kernel, stage.model, stage.channels)?;
         let layout = pipeline.get_bind_group_layout(0);
+        let range = units.start / stage.units * stage.per_unit..units.end.div_ceil(stage.units) * stage.per_unit;
+        let base = count(units.start * stage.per_unit)?;
         let per_step = (EVALUATIONS_PER_DISPATCH / stage.cost).clamp(WORKGROUP, INVOCATIONS_PER_DISPATCH);
         for first in range.clone().step_by(per_step) {
             let end = (first + per_step).min(range.end);
-            let job = Job { first: count(first)?, end: count(end)?, base: count(range.start)?, ..stage.job };
+            let job = Job { first: count(first)?, end: count(end)?, base, ..stage.job };
             let job = self.init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
             let buffers =
                 [&job].into_iter().chain(&stage.inputs).chain(more_inputs.iter().copied()).chain([output]);

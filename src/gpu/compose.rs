@@ -32,7 +32,7 @@ macro_rules! shader {
 }
 
 /// The arithmetic of every kernel.
-const PRECISION: &str = "alias real = f32;\nalias real2 = vec2<real>;\n";
+const PRECISION: &str = "alias real = f32;\nalias real2 = vec2<real>;\nalias real4 = vec4<real>;\n";
 
 /// The WGSL of `kernel` for `model` (none: kernels that evaluate no model) and so many channels.
 pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize) -> String {

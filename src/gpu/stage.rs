@@ -6,8 +6,10 @@ use crate::error::Result;
 use crate::models::{ALPHA_MIN_INTEGRAL, Model};
 use crate::pair::{Azimuth, AzimuthF32, Pair, PairF32};
 use crate::plan::Lobe;
+use crate::slopes::TILE_ALPHAS;
 use crate::work::{Inner, Work, WorkKind};
 use bytemuck::{Pod, Zeroable};
+use std::ops::Range;
 
 /// The stages of one lobe: values in one, or raw integrals and then their outer sum.
 pub(super) struct Stages {
@@ -23,8 +25,10 @@ pub(super) struct Stage {
     pub channels: usize,
     pub job: Job,
     pub inputs: Vec<wgpu::Buffer>,
-    /// Invocations for each unit of the table (see `Layout`).
+    /// Results for each unit of the table (see `Layout`).
     pub per_unit: usize,
+    /// Units whose results one invocation makes.
+    pub units: usize,
     /// Evaluations of an invocation.
     pub cost: usize,
 }
@@ -57,6 +61,7 @@ impl Stages {
                     job: Job { columns: count(pairs.len())?, azimuths: count(azimuths.len())?, ..job },
                     inputs: vec![baker.reals(&work.alphas), baker.pairs(pairs), baker.azimuths(azimuths)],
                     per_unit: azimuths.len().div_ceil(4),
+                    units: 1,
                     cost: 4,
                 },
                 sum: None,
@@ -64,8 +69,7 @@ impl Stages {
             WorkKind::Integrals { inner, outer } => Ok(Self {
                 inner: Stage {
                     model: Some(lobe.model),
-                    per_unit: outer.len(),
-                    cost: inner.cost(),
+                    per_unit: inner.count(),
                     ..Stage::inner(baker, inner, &work.alphas)?
                 },
                 sum: Some(Stage {
@@ -74,7 +78,8 @@ impl Stages {
                     channels: 0,
                     job: Job { columns: count(channels)?, nodes: count(outer.len())?, ..job },
                     inputs: vec![baker.reals(outer)],
-                    per_unit: 1,
+                    per_unit: inner.count() / outer.len(),
+                    units: 1,
                     cost: outer.len(),
                 }),
             }),
@@ -91,21 +96,26 @@ impl Stage {
     /// The kernel, counts and inputs of inner integrals.
     fn inner(baker: &Baker, inner: &Inner, alphas: &[f64]) -> Result<Self> {
         let (kernel, azimuths, nodes, inputs) = match inner {
-            Inner::Slopes { mus, azimuths, nodes, .. } => {
+            Inner::Slopes(work) => {
                 // What is so near the mirror that it is the mirror's in f64 is 0 to the kernel.
-                let alphas: Vec<_> = alphas
-                    .iter()
-                    .map(|&alpha| if alpha < ALPHA_MIN_INTEGRAL { 0.0 } else { alpha })
-                    .collect();
-                let azimuths_f32: Vec<_> = azimuths.iter().map(|a| a.map(|x| x as f32)).collect();
-                let nodes_f32: Vec<_> = nodes.iter().map(|n| [n.x as f32, n.weight as f32]).collect();
+                let mut alphas: Vec<_> =
+                    alphas.iter().map(|&alpha| if alpha < ALPHA_MIN_INTEGRAL { 0.0 } else { alpha }).collect();
+                let rows = alphas.len();
+                alphas.resize(rows.next_multiple_of(TILE_ALPHAS), 1.0);
+                let pair = |[a, b]: [Range<usize>; 2]| [a.start, a.len(), b.start, b.len()].map(|n| n as u32);
+                let columns: Vec<_> = work.columns.iter().cloned().map(pair).collect();
+                let tiles: Vec<_> = work.tiles().map(pair).collect();
+                let azimuths: Vec<_> = work.azimuths.iter().map(|a| a.map(|x| x as f32)).collect();
+                let nodes: Vec<_> = work.nodes.iter().map(|n| [n.x as f32, n.weight as f32]).collect();
                 let inputs = vec![
                     baker.reals(&alphas),
-                    baker.reals(mus),
-                    baker.input(&azimuths_f32),
-                    baker.input(&nodes_f32),
+                    baker.reals(&work.mus),
+                    baker.input(&columns),
+                    baker.input(&tiles),
+                    baker.input(&azimuths),
+                    baker.input(&nodes),
                 ];
-                (Kernel::Slopes, azimuths.len() / mus.len(), nodes.len(), inputs)
+                (Kernel::Slopes, 0, rows, inputs)
             }
             Inner::Product { pairs, azimuths } => {
                 let inputs = vec![baker.reals(alphas), baker.pairs(pairs), baker.azimuths(azimuths)];
@@ -121,7 +131,8 @@ impl Stage {
             nodes: count(nodes)?,
             ..Job::zeroed()
         };
-        Ok(Self { kernel, model: None, channels: 0, job, inputs, per_unit: 1, cost: 1 })
+        let units = if kernel == Kernel::Slopes { TILE_ALPHAS } else { 1 };
+        Ok(Self { kernel, model: None, channels: 0, job, inputs, per_unit: 1, units, cost: units * inner.cost() })
     }
 }
 

@@ -2,8 +2,9 @@
 //! `shaders/lobe/microfacet.wgsl`, put together for these parts.
 
 use super::fresnel::schlick::{self, fresnel};
-use super::masking::smith::{self, visibility};
-use super::ndf::ggx::{self, map, map_end, ndf};
+use super::masking::smith::{self, masking, visibility};
+use super::ndf::ggx::{self, Map, map, map_end, ndf};
+use super::ndf::ggx_nodes;
 use super::{Component, Integral, Model, Slopes, part};
 use crate::pair::Half;
 use crate::reference;
@@ -19,6 +20,8 @@ pub(crate) static MODEL: Model = Model {
     integral: Integral::Slopes(&Slopes {
         end: map_end,
         integrand: slope_integrand,
+        azimuths: ggx_nodes::azimuths,
+        nodes: ggx_nodes::nodes,
         mirror_limit: |mu_e| fresnel(mu_e, 1.0 - mu_e),
     }),
     lobe: |p, a, alpha| {
@@ -30,11 +33,11 @@ pub(crate) static MODEL: Model = Model {
 };
 
 fn slope_integrand(r: f64, [c, t_max, t_max_inverse]: [f64; 3], mu_e: f64, alpha: f64) -> [f64; 2] {
-    let [t, weight] = map(r, alpha);
-    let cos2_m = 1.0 / (1.0 + t * t);
-    let projected = 1.0 + c * t;
-    let mu_i = (cos2_m * mu_e * (t_max - t) * (t + t_max_inverse)).max(0.0);
-    let g2 = 4.0 * mu_i * mu_e * visibility(mu_i, mu_e, alpha);
-    let c = (mu_e * projected * cos2_m.sqrt()).min(1.0);
-    fresnel(c, 1.0 - c).map(|f| f * g2 * projected * weight)
+    let Map { p, m, weight, divisor } = map(r, alpha);
+    let projected = m + c * p;
+    let sec2 = m * m + p * p;
+    let mu_i = mu_e * ((t_max * m - p) * (p + t_max_inverse * m)).max(0.0);
+    let all = 2.0 * mu_e * mu_i * projected * weight / (masking(mu_i, sec2, mu_e, alpha) * m * divisor);
+    let c = (mu_e * projected / sec2.sqrt()).min(1.0);
+    fresnel(c, 1.0 - c).map(|f| f * all)
 }

@@ -78,6 +78,10 @@ pub struct Slopes {
     pub(crate) end: fn(t_max: f64, alpha: f64) -> f64,
     /// The integrand at r, for an azimuth (c, t_max, 1/t_max).
     pub(crate) integrand: fn(r: f64, azimuth: [f64; 3], mu_e: f64, alpha: f64) -> [f64; 2],
+    /// How many azimuths a texel takes to meet a tolerance, with cos φ > 0 and < 0.
+    pub(crate) azimuths: fn(mu: f64, alpha: f64, tolerance: f64) -> [usize; 2],
+    /// How many nodes in r each of them takes.
+    pub(crate) nodes: fn(mu: f64, alpha: f64, tolerance: f64) -> [usize; 2],
     /// What α → 0 tends to.
     pub(crate) mirror_limit: fn(mu_e: f64) -> [f64; 2],
 }

@@ -1,3 +1,4 @@
 //! Distributions of microfacet normals.
 
 pub(crate) mod ggx;
+pub(crate) mod ggx_nodes;
