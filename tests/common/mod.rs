@@ -2,7 +2,7 @@
 #![allow(dead_code)] // each test file uses its own part
 
 use gonio::axis::{Axis, Mapping, Positions, Variable};
-use gonio::bake::{Evaluator, Stages, Unobserved};
+use gonio::bake::{Evaluator, Stages, Unobserved, WARPED};
 use gonio::check::Check;
 use gonio::gpu::{DeviceChoice, INSTALL};
 use gonio::models::{self, Model};
@@ -47,7 +47,7 @@ pub fn listed(variable: Variable, values: &[f64]) -> Axis {
     Axis::listed(variable, values).unwrap()
 }
 
-/// A basis over `axes`, after a roughness axis if the model has one.
+/// A basis over `axes`, after a roughness axis if the model has one, as exact as f32 is.
 pub fn basis(
     quantity: &'static Quantity,
     model: &'static Model,
@@ -56,7 +56,7 @@ pub fn basis(
 ) -> TablePlan {
     let swept = model.has_roughness.then(|| listed(Variable::Roughness, roughness));
     let axes = swept.into_iter().chain(axes).collect();
-    TablePlan::basis("test", quantity, model, None, axes).unwrap()
+    TablePlan::basis("test", quantity, model, None, axes).unwrap().with_tolerance(WARPED)
 }
 
 pub fn bake(evaluator: &Evaluator, plan: &TablePlan, check: Check) -> Table {
