@@ -68,11 +68,11 @@ A recipe asks for tables without a scene:
   model = \"ggx\"
   axes = { mu = 64, roughness = 64 }
 
-An axis is a count, or { count, range = [a, b], positions = \"centers\" | \"nodes\", mapping = \"linear\" |
-\"sqrt\" }, or { values = [] }. The README has the rest.
+An axis is a count, or { values = [] }, or { count, range = [a, b], positions, mapping } with
+positions \"centers\" or \"nodes\" and mapping \"linear\" or \"sqrt\". The README has the rest.
 
-Exit codes: 0 success, 1 a table misses its tolerance, 2 bad input, 3 no device, 130 interrupted. Whatever
-was in DIR stays as it was unless all of it succeeds.";
+Exit codes: 0 success, 1 a table misses its tolerance, 2 bad input, 3 no device, 130 interrupted.
+Whatever was in DIR stays as it was unless all of it succeeds.";
 
 fn tolerance(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| format!("\"{text}\" is not a number"))?;
