@@ -44,6 +44,33 @@ pub struct Lobe {
     pub weights: Vec<[f64; 2]>,
 }
 
+/// An arithmetic.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Precision {
+    /// Single: 24 bits.
+    F32,
+    /// Double: 53 bits.
+    F64,
+}
+
+impl Precision {
+    /// `f32` or `f64`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        }
+    }
+
+    /// Bytes of a number.
+    pub(crate) fn bytes(self) -> usize {
+        match self {
+            Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+}
+
 /// How integrals are done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rule {
@@ -179,6 +206,13 @@ impl TablePlan {
         }
     }
 
+    /// The least arithmetic that meets the tolerance: f32 has a floor, of some hundred roundings in an
+    /// integral and of [`VALUE_F32`] in a value.
+    pub fn precision(&self) -> Precision {
+        let floor = if self.quantity.evaluation == Evaluation::Value { VALUE_F32 } else { INTEGRAL_F32 };
+        if self.tolerance < floor { Precision::F64 } else { Precision::F32 }
+    }
+
     /// Samples along each axis, slowest first.
     pub fn shape(&self) -> Vec<usize> {
         self.axes.iter().map(Axis::len).collect()
@@ -221,6 +255,17 @@ impl TablePlan {
             .collect()
     }
 }
+
+/// The relative error of values in f32, in units of 2⁻²⁴: factors, α and weights are rounded once each;
+/// q of GGX's D takes 5 and is squared; G2/(4 μi μe) takes 6; Fc is the fifth power of what takes 4;
+/// products take 4. The sum bounds the worst case, B of a lobe.
+pub const VALUE_F32: f64 = 40.0 / (1 << 24) as f64;
+
+/// The least tolerance of integrals that f32 meets: roundings of some hundred terms, measured at 5e-7.
+pub const INTEGRAL_F32: f64 = 1e-6;
+
+/// The relative error of f64 values stored as f32.
+pub const STORED_F32: f64 = 1.0 / (1 << 24) as f64;
 
 /// The tolerance where nobody names one.
 pub const DEFAULT_TOLERANCE: f64 = 1e-4;

@@ -5,10 +5,10 @@ mod common;
 
 use common::*;
 use gonio::axis::Variable::{DeltaPhi, ThetaE, ThetaI};
-use gonio::bake::{STORED_F32, VALUE_F32};
+
 use gonio::check::Check;
 use gonio::models::MODELS;
-use gonio::plan::TablePlan;
+use gonio::plan::{STORED_F32, TablePlan, VALUE_F32};
 use gonio::quantity::BRDF;
 use std::f64::consts::{FRAC_PI_2, PI};
 

@@ -10,7 +10,7 @@ use crate::check::{Check, cross_check};
 use crate::cpu;
 use crate::error::{Error, Result};
 use crate::gpu::{Device, DeviceChoice};
-use crate::plan::{Rule, TablePlan};
+use crate::plan::{INTEGRAL_F32, Precision, Rule, STORED_F32, TablePlan, VALUE_F32};
 use crate::quantity::Evaluation;
 use crate::table::Table;
 use serde::Serialize;
@@ -42,17 +42,6 @@ pub trait Observer: Sync {
 pub struct Unobserved;
 
 impl Observer for Unobserved {}
-
-/// The relative error of values in f32, in units of 2⁻²⁴: factors, α and weights are rounded once each;
-/// q of GGX's D takes 5 and is squared; G2/(4 μi μe) takes 6; Fc is the fifth power of what takes 4;
-/// products take 4. The sum bounds the worst case, B of a lobe.
-pub const VALUE_F32: f64 = 40.0 / (1 << 24) as f64;
-
-/// The relative error of f64 values stored as f32.
-pub const STORED_F32: f64 = 1.0 / (1 << 24) as f64;
-
-/// The least tolerance of integrals that f32 meets: roundings of some hundred terms, measured at 5e-7.
-pub const WARPED: f64 = 1e-6;
 
 /// Where the time went, in seconds.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -154,7 +143,7 @@ impl Evaluator {
         if plan.quantity.evaluation == Evaluation::Value {
             return Some(if matches!(self, Self::Cpu) { STORED_F32 } else { VALUE_F32 });
         }
-        (plan.rule == Rule::Warped).then_some(plan.tolerance.max(WARPED))
+        (plan.rule == Rule::Warped).then_some(plan.tolerance.max(INTEGRAL_F32))
     }
 }
 

@@ -5,7 +5,7 @@ use super::stage::{Job, Stage, Stages};
 use crate::axis::Variable;
 use crate::error::{Error, Result};
 use crate::models::Model;
-use crate::plan::TablePlan;
+use crate::plan::{Precision, TablePlan};
 use crate::quantity::Evaluation;
 use crate::slopes::TILE_ALPHAS;
 use crate::work::Work;
@@ -26,7 +26,7 @@ pub struct Baker {
     composing: Mutex<f64>,
 }
 
-type PipelineKey = (Kernel, Option<&'static str>, usize);
+type PipelineKey = (Kernel, Option<&'static str>, usize, Precision);
 
 /// A table on the device: `height` rows of `width` texels of `channels` floats.
 #[derive(Debug, Clone)]
@@ -67,6 +67,8 @@ pub(super) struct Layout {
     pub texels: usize,
     pub padded: usize,
     pub channels: usize,
+    /// Of the result: values are f32 however they are computed.
+    pub precision: Precision,
 }
 
 /// What a dispatch may cost: 8 million evaluations stay below 100 ms on two cores of software
@@ -79,20 +81,20 @@ const TILE_BYTES: usize = 1 << 25;
 const WORKGROUP: usize = 64;
 
 impl Layout {
-    pub fn new(table: &TablePlan) -> Self {
+    pub fn new(table: &TablePlan, precision: Precision) -> Self {
         let channels = table.channels.len();
         if !is_value(table) {
             let units = table.axis(Variable::Roughness).map_or(1, |axis| axis.len());
             let texels = table.texels() / units;
-            return Self { units, texels, padded: texels, channels };
+            return Self { units, texels, padded: texels, channels, precision };
         }
         let texels = table.axes.last().map_or(1, |axis| axis.len());
-        Self { units: table.texels() / texels, texels, padded: texels.next_multiple_of(4), channels }
+        Self { units: table.texels() / texels, texels, padded: texels.next_multiple_of(4), channels, precision: Precision::F32 }
     }
 
     /// Bytes of so many units.
     pub fn bytes(&self, units: usize) -> usize {
-        units * self.padded * self.channels * 4
+        units * self.padded * self.channels * self.precision.bytes()
     }
 
     /// The ranges of units that fit a tile each, by size alone: results must not depend on speed.
@@ -121,8 +123,8 @@ impl Baker {
     /// # Errors
     /// When the table does not fit one binding of the device.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, table: &TablePlan) -> Result<Recorded> {
-        let layout = Layout::new(table);
-        let stages = self.stages(table)?;
+        let layout = Layout::new(table, Precision::F32);
+        let stages = self.stages(table, Precision::F32)?;
         let raw = stages.iter().map(Stages::raw_bytes_per_unit).max().unwrap_or(0) * layout.units;
         let bytes = layout.bytes(layout.units).max(raw);
         let limits = self.device.limits();
@@ -149,12 +151,12 @@ impl Baker {
     }
 
     /// The work of every lobe of a table, uploaded.
-    pub(super) fn stages(&self, table: &TablePlan) -> Result<Vec<Stages>> {
+    pub(super) fn stages(&self, table: &TablePlan, precision: Precision) -> Result<Vec<Stages>> {
         table
             .lobes
             .iter()
             .enumerate()
-            .map(|(k, lobe)| Stages::new(self, lobe, &Work::new(table, lobe), k > 0))
+            .map(|(k, lobe)| Stages::new(self, lobe, &Work::new(table, lobe), k > 0, precision))
             .collect()
     }
 
@@ -165,7 +167,7 @@ impl Baker {
             match sum {
                 None => self.steps(inner, &[], &units, &tile.buffer, &mut tile.steps)?,
                 Some(sum) => {
-                    let raw = self.output(units.len() * inner.per_unit * RAW_BYTES);
+                    let raw = self.output(units.len() * inner.per_unit * 2 * inner.precision.bytes());
                     self.steps(inner, &[], &units, &raw, &mut tile.steps)?;
                     self.steps(sum, &[&raw], &units, &tile.buffer, &mut tile.steps)?;
                 }
@@ -183,7 +185,7 @@ impl Baker {
         output: &wgpu::Buffer,
         steps: &mut Vec<Step>,
     ) -> Result<()> {
-        let pipeline = self.pipeline(stage.kernel, stage.model, stage.channels)?;
+        let pipeline = self.pipeline(stage.kernel, stage.model, stage.channels, stage.precision)?;
         let layout = pipeline.get_bind_group_layout(0);
         let range =
             units.start / stage.units * stage.per_unit..units.end.div_ceil(stage.units) * stage.per_unit;
@@ -222,15 +224,16 @@ impl Baker {
         kernel: Kernel,
         model: Option<&'static Model>,
         channels: usize,
+        precision: Precision,
     ) -> Result<wgpu::ComputePipeline> {
-        let key = (kernel, model.map(|m| m.name), channels);
+        let key = (kernel, model.map(|m| m.name), channels, precision);
         let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(pipeline) = pipelines.get(&key) {
             return Ok(pipeline.clone());
         }
         let label = format!("gonio {kernel:?} {}", key.1.unwrap_or_default());
         let start = Instant::now();
-        let composed = validate(&compose(kernel, model, channels))?;
+        let composed = validate(&compose(kernel, model, channels, precision), precision)?;
         *self.composing.lock().unwrap_or_else(PoisonError::into_inner) += start.elapsed().as_secs_f64();
         let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(&label),
@@ -272,9 +275,6 @@ impl Baker {
 fn is_value(table: &TablePlan) -> bool {
     table.quantity.evaluation == Evaluation::Value
 }
-
-/// Bytes of one raw integral, (A, B).
-pub(super) const RAW_BYTES: usize = 8;
 
 /// A count as the device takes it.
 pub(super) fn count(n: usize) -> Result<u32> {

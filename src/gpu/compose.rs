@@ -6,6 +6,7 @@
 
 use crate::error::{Error, Result};
 use crate::models::{Model, Part};
+use crate::plan::Precision;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// A kernel: one entry point.
@@ -31,15 +32,14 @@ macro_rules! shader {
     };
 }
 
-/// The arithmetic of every kernel.
-const PRECISION: &str = "alias real = f32;\nalias real2 = vec2<real>;\nalias real4 = vec4<real>;\n";
-
 /// The WGSL of `kernel` for `model` (none: kernels that evaluate no model) and so many channels.
-pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize) -> String {
+pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize, precision: Precision) -> String {
     if kernel == Kernel::Pack {
         return shader!("kernel/pack").into();
     }
-    let mut source = String::from(PRECISION);
+    // One source for both: no kernel calls a transcendental built-in, which f64 lacks.
+    let real = precision.name();
+    let mut source = format!("alias real = {real};\nalias real2 = vec2<real>;\nalias real4 = vec4<real>;\n");
     let mut add = |name: &str, wgsl: &str| source.push_str(&format!("\n// ---- {name}\n{wgsl}"));
     add("kernel/job", shader!("kernel/job"));
     if let Some(model) = model {
@@ -66,13 +66,15 @@ pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize) -> String
     source
 }
 
-/// Parses and validates a composed shader for what every WebGPU device has, before any device sees
-/// it.
-pub fn validate(source: &str) -> Result<naga::Module> {
+/// Parses and validates a composed shader before any device sees it: for what every WebGPU device has,
+/// and f64 where that is the precision.
+pub fn validate(source: &str, precision: Precision) -> Result<naga::Module> {
     let fault = |what: String| Error::Internal(format!("a composed shader is not valid WGSL: {what}"));
     let module = naga::front::wgsl::parse_str(source).map_err(|e| fault(e.emit_to_string(source)))?;
     // pack2x16float is core WGSL; naga counts it because old GLES lacks it.
-    Validator::new(ValidationFlags::all(), Capabilities::SHADER_FLOAT16_IN_FLOAT32)
+    let mut capabilities = Capabilities::SHADER_FLOAT16_IN_FLOAT32;
+    capabilities.set(Capabilities::FLOAT64, precision == Precision::F64);
+    Validator::new(ValidationFlags::all(), capabilities)
         .validate(&module)
         .map_err(|e| fault(e.emit_to_string(source)))?;
     Ok(module)

@@ -1,11 +1,11 @@
-//! The work of one lobe, uploaded: f64 factors rounded to f32, as the kernels lay them out.
+//! The work of one lobe, uploaded: f64 factors rounded to the kernels' precision, as they lay them out.
 
-use super::baker::{Baker, RAW_BYTES, count};
+use super::baker::{Baker, count};
 use super::compose::Kernel;
 use crate::error::Result;
 use crate::models::{ALPHA_MIN_INTEGRAL, Model};
-use crate::pair::{Azimuth, AzimuthF32, Pair, PairF32};
-use crate::plan::Lobe;
+use crate::pair::{Azimuth, Pair};
+use crate::plan::{Lobe, Precision};
 use crate::slopes::TILE_ALPHAS;
 use crate::work::{Inner, Work, WorkKind};
 use bytemuck::{Pod, Zeroable};
@@ -23,6 +23,7 @@ pub(super) struct Stage {
     pub model: Option<&'static Model>,
     /// Channels, where the kernel is composed for them.
     pub channels: usize,
+    pub precision: Precision,
     pub job: Job,
     pub inputs: Vec<wgpu::Buffer>,
     /// Results for each unit of the table (see `Layout`).
@@ -49,7 +50,8 @@ pub(super) struct Job {
 }
 
 impl Stages {
-    pub fn new(baker: &Baker, lobe: &Lobe, work: &Work, accumulate: bool) -> Result<Self> {
+    pub fn new(baker: &Baker, lobe: &Lobe, work: &Work, accumulate: bool, precision: Precision) -> Result<Self> {
+        let upload = Upload { baker, precision };
         let channels = lobe.weights.len();
         let job = Job { accumulate: u32::from(accumulate), ..Job::new(lobe) };
         match &work.kind {
@@ -58,8 +60,9 @@ impl Stages {
                     kernel: Kernel::Values,
                     model: Some(lobe.model),
                     channels,
+                    precision,
                     job: Job { columns: count(pairs.len())?, azimuths: count(azimuths.len())?, ..job },
-                    inputs: vec![baker.reals(&work.alphas), baker.pairs(pairs), baker.azimuths(azimuths)],
+                    inputs: vec![upload.reals(&work.alphas), upload.pairs(pairs), upload.azimuths(azimuths)],
                     per_unit: azimuths.len().div_ceil(4),
                     units: 1,
                     cost: 4,
@@ -70,14 +73,15 @@ impl Stages {
                 inner: Stage {
                     model: Some(lobe.model),
                     per_unit: inner.count(),
-                    ..Stage::inner(baker, inner, &work.alphas)?
+                    ..Stage::inner(&upload, inner, &work.alphas)?
                 },
                 sum: Some(Stage {
                     kernel: Kernel::Sum,
                     model: None,
                     channels: 0,
+                    precision,
                     job: Job { columns: count(channels)?, nodes: count(outer.len())?, ..job },
-                    inputs: vec![baker.reals(outer)],
+                    inputs: vec![upload.reals(outer)],
                     per_unit: inner.count() / outer.len(),
                     units: 1,
                     cost: outer.len(),
@@ -88,13 +92,13 @@ impl Stages {
 
     /// Bytes between the stages for each unit.
     pub fn raw_bytes_per_unit(&self) -> usize {
-        if self.sum.is_some() { self.inner.per_unit * RAW_BYTES } else { 0 }
+        if self.sum.is_some() { self.inner.per_unit * 2 * self.inner.precision.bytes() } else { 0 }
     }
 }
 
 impl Stage {
     /// The kernel, counts and inputs of inner integrals.
-    fn inner(baker: &Baker, inner: &Inner, alphas: &[f64]) -> Result<Self> {
+    fn inner(upload: &Upload, inner: &Inner, alphas: &[f64]) -> Result<Self> {
         let (kernel, azimuths, nodes, inputs) = match inner {
             Inner::Slopes(work) => {
                 // What is so near the mirror that it is the mirror's in f64 is 0 to the kernel.
@@ -107,24 +111,23 @@ impl Stage {
                 let pair = |[a, b]: [Range<usize>; 2]| [a.start, a.len(), b.start, b.len()].map(|n| n as u32);
                 let columns: Vec<_> = work.columns.iter().cloned().map(pair).collect();
                 let tiles: Vec<_> = work.tiles().map(pair).collect();
-                let azimuths: Vec<_> = work.azimuths.iter().map(|a| a.map(|x| x as f32)).collect();
-                let nodes: Vec<_> = work.nodes.iter().map(|n| [n.x as f32, n.weight as f32]).collect();
+                let nodes: Vec<_> = work.nodes.iter().map(|node| [node.x, node.weight]).collect();
                 let inputs = vec![
-                    baker.reals(&alphas),
-                    baker.reals(&work.mus),
-                    baker.input(&columns),
-                    baker.input(&tiles),
-                    baker.input(&azimuths),
-                    baker.input(&nodes),
+                    upload.reals(&alphas),
+                    upload.reals(&work.mus),
+                    upload.input(&columns),
+                    upload.input(&tiles),
+                    upload.reals(work.azimuths.as_flattened()),
+                    upload.reals(nodes.as_flattened()),
                 ];
                 (Kernel::Slopes, 0, rows, inputs)
             }
             Inner::Product { pairs, azimuths } => {
-                let inputs = vec![baker.reals(alphas), baker.pairs(pairs), baker.azimuths(azimuths)];
+                let inputs = vec![upload.reals(alphas), upload.pairs(pairs), upload.azimuths(azimuths)];
                 (Kernel::Product, azimuths.len(), 0, inputs)
             }
             Inner::Analytic { mus, .. } => {
-                (Kernel::Analytic, 0, 0, vec![baker.reals(alphas), baker.reals(mus)])
+                (Kernel::Analytic, 0, 0, vec![upload.reals(alphas), upload.reals(mus)])
             }
         };
         let job = Job {
@@ -138,6 +141,7 @@ impl Stage {
             kernel,
             model: None,
             channels: 0,
+            precision: upload.precision,
             job,
             inputs,
             per_unit: 1,
@@ -157,20 +161,29 @@ impl Job {
     }
 }
 
-impl Baker {
+/// Uploads numbers in the kernels' precision.
+struct Upload<'a> {
+    baker: &'a Baker,
+    precision: Precision,
+}
+
+impl Upload<'_> {
     fn reals(&self, values: &[f64]) -> wgpu::Buffer {
-        self.input(&values.iter().map(|&x| x as f32).collect::<Vec<_>>())
+        match self.precision {
+            Precision::F32 => self.input(&values.iter().map(|&x| x as f32).collect::<Vec<_>>()),
+            Precision::F64 => self.input(values),
+        }
     }
 
     fn pairs(&self, pairs: &[Pair]) -> wgpu::Buffer {
-        self.input(&pairs.iter().map(PairF32::from).collect::<Vec<_>>())
+        self.reals(pairs.iter().map(|pair| pair.to_array()).collect::<Vec<_>>().as_flattened())
     }
 
     fn azimuths(&self, azimuths: &[Azimuth]) -> wgpu::Buffer {
-        self.input(&azimuths.iter().map(AzimuthF32::from).collect::<Vec<_>>())
+        self.reals(azimuths.iter().map(|azimuth| azimuth.to_array()).collect::<Vec<_>>().as_flattened())
     }
 
     fn input<T: Pod>(&self, items: &[T]) -> wgpu::Buffer {
-        self.init(bytemuck::cast_slice(items), wgpu::BufferUsages::STORAGE)
+        self.baker.init(bytemuck::cast_slice(items), wgpu::BufferUsages::STORAGE)
     }
 }

@@ -2,11 +2,11 @@
 #![allow(dead_code)] // each test file uses its own part
 
 use gonio::axis::{Axis, Mapping, Positions, Variable};
-use gonio::bake::{Evaluator, Stages, Unobserved, WARPED};
+use gonio::bake::{Evaluator, Stages, Unobserved};
 use gonio::check::Check;
 use gonio::gpu::{DeviceChoice, INSTALL};
 use gonio::models::{self, Model};
-use gonio::plan::TablePlan;
+use gonio::plan::{INTEGRAL_F32, TablePlan};
 use gonio::quantity::Quantity;
 use gonio::table::Table;
 use std::sync::OnceLock;
@@ -56,7 +56,7 @@ pub fn basis(
 ) -> TablePlan {
     let swept = model.has_roughness.then(|| listed(Variable::Roughness, roughness));
     let axes = swept.into_iter().chain(axes).collect();
-    TablePlan::basis("test", quantity, model, None, axes).unwrap().with_tolerance(WARPED)
+    TablePlan::basis("test", quantity, model, None, axes).unwrap().with_tolerance(INTEGRAL_F32)
 }
 
 pub fn bake(evaluator: &Evaluator, plan: &TablePlan, check: Check) -> Table {
