@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::gpu::{Device, DeviceChoice};
 use crate::plan::{Rule, TablePlan};
 use crate::quantity::Evaluation;
-use crate::table::Table;
+use crate::table::{Table, Values};
 use serde::Serialize;
 use std::time::Instant;
 
@@ -112,12 +112,13 @@ impl Evaluator {
         let tick = |share| observer.advance(share);
         let before = stages.dispatch + stages.readback;
         let values = match self {
-            Self::Device(device) => device.evaluate(plan, stages, &tick)?,
+            Self::Device(device) => Values::F32(device.evaluate(plan, stages, &tick)?),
             Self::Cpu => {
                 let start = Instant::now();
                 let values = cpu::evaluate(plan, &tick)?;
                 stages.dispatch += start.elapsed().as_secs_f64();
-                values
+                // Tables are stored in f32, however they are computed.
+                Values::F32(values.into_iter().map(|x| x as f32).collect())
             }
         };
         let seconds = stages.dispatch + stages.readback - before;
@@ -195,7 +196,7 @@ fn check_energy(plan: &TablePlan, table: &Table) -> Result<()> {
         .map(|lobe| lobe.weights.as_flattened().iter().copied().fold(0.0, f64::max) * lobe.model.rho_bound)
         .sum();
     for texel in 0..table.texels() {
-        let channels = table.texel(texel).iter().map(|&v| f64::from(v));
+        let channels = table.texel(texel).into_iter();
         let reflected = if together { channels.sum() } else { channels.fold(0.0, f64::max) };
         // Twice the tolerance, as A and B may both be off.
         if reflected > bound + 2.0 * plan.tolerance {
