@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::plan::{Lobe, TablePlan};
 use crate::quantity::Evaluation;
 use crate::reference::Angles;
-use crate::table::{ErrorKind, TableError, indices};
+use crate::table::{ErrorKind, TableError, Values, indices};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -43,7 +43,7 @@ pub const VALUE_FLOOR: f64 = 1e-30;
 /// `tick` is called between comparisons and stops them by an error.
 pub fn cross_check(
     table: &TablePlan,
-    values: &[f32],
+    values: &Values,
     check: Check,
     estimate: Option<f64>,
     tick: &(impl Fn(f64) -> Result<()> + Sync),
@@ -72,8 +72,8 @@ pub fn cross_check(
         .par_iter()
         .map(|&texel| {
             let truth = reference(table, texel);
-            let differences = truth.iter().zip(&values[texel * channels..]).map(|(&truth, &value)| {
-                let difference = (f64::from(value) - truth).abs();
+            let differences = truth.iter().enumerate().map(|(channel, &truth)| {
+                let difference = (values.get(texel * channels + channel) - truth).abs();
                 let difference = floor.map_or(difference, |floor| difference / truth.max(floor));
                 if difference.is_nan() { f64::INFINITY } else { difference }
             });
@@ -93,7 +93,7 @@ pub fn cross_check(
         let coordinates = table.axes.iter().zip(indices(&table.shape(), texel));
         error.worst = coordinates.map(|(axis, k)| (axis.variable.name().into(), axis.values[k])).collect();
         error.worst.insert("channel".into(), channel as f64);
-        error.worst.insert("value".into(), f64::from(values[texel * channels + channel]));
+        error.worst.insert("value".into(), values.get(texel * channels + channel));
         error.worst.insert("reference".into(), truth);
     }
     Ok(error)
@@ -186,7 +186,9 @@ mod tests {
         let lambert = models::find("lambert").unwrap();
         let table = TablePlan::basis("t", &quantity::RHO_DH, lambert, None, axes).unwrap();
         let mut values = vec![1.0; 40];
-        let check = |values: &[f32]| cross_check(&table, values, Check::All, None, &|_| Ok(())).unwrap();
+        let check = |values: &[f32]| {
+            cross_check(&table, &values.to_vec().into(), Check::All, None, &|_| Ok(())).unwrap()
+        };
         assert!(check(&values).measured_max.unwrap() < 1e-9);
         values[17] = 1.001;
         let error = check(&values);

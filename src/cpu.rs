@@ -12,7 +12,7 @@ use rayon::prelude::*;
 pub(crate) fn evaluate<E: Send>(
     table: &TablePlan,
     tick: &(impl Fn(f64) -> Result<(), E> + Sync),
-) -> Result<Vec<f32>, E> {
+) -> Result<Vec<f64>, E> {
     let channels = table.channels.len();
     let mut sums = vec![0.0; table.texels() * channels];
     let share = 1.0 / table.lobes.len() as f64;
@@ -44,7 +44,7 @@ pub(crate) fn evaluate<E: Send>(
             }
         }
     }
-    Ok(sums.into_iter().map(|x| x as f32).collect())
+    Ok(sums)
 }
 
 fn add(out: &mut [f64], lobe: &Lobe, [a, b]: [f64; 2]) {

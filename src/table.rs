@@ -3,6 +3,7 @@
 use crate::axis::Axis;
 use crate::error::{Error, Result};
 use serde::Serialize;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// A baked table: `quantity × axes × subject`, row-major, the channels last.
@@ -23,7 +24,7 @@ pub struct Table {
     /// The channels' names: `A`, `B` of a basis, `R`, `G`, `B` of a material.
     pub channels: Vec<String>,
     /// The values, row-major over the axes, channels last.
-    pub values: Vec<f32>,
+    pub values: Values,
     /// How it was computed, in words: "warped 32 v × 2·24 φ".
     pub rule: String,
     /// The arithmetic: `f32` or `f64`.
@@ -32,6 +33,16 @@ pub struct Table {
     pub error: TableError,
     /// Time to compute it and to read it back; neither compiling nor the check.
     pub seconds: f64,
+}
+
+/// Values in the arithmetic that made them, or in that which they were rounded to.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Values {
+    /// Single precision.
+    F32(Vec<f32>),
+    /// Double precision.
+    F64(Vec<f64>),
 }
 
 /// The error of a table against the f64 reference.
@@ -64,6 +75,83 @@ pub enum ErrorKind {
     Relative,
 }
 
+impl Values {
+    /// How many.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::F32(values) => values.len(),
+            Self::F64(values) => values.len(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// One of them; both kinds fit f64.
+    pub fn get(&self, k: usize) -> f64 {
+        match self {
+            Self::F32(values) => f64::from(values[k]),
+            Self::F64(values) => values[k],
+        }
+    }
+
+    /// All of them, in order.
+    pub fn iter(&self) -> impl Iterator<Item = f64> + Clone {
+        (0..self.len()).map(|k| self.get(k))
+    }
+
+    /// One of them in the fewest digits that tell it from its neighbours.
+    pub fn show(&self, k: usize) -> String {
+        match self {
+            Self::F32(values) => values[k].to_string(),
+            Self::F64(values) => values[k].to_string(),
+        }
+    }
+
+    /// Takes the values of `other` for every texel of so many channels where `misses` says so of the
+    /// largest difference between both. Returns the largest difference of the texels that stay.
+    pub(crate) fn take_where(&mut self, other: &Self, channels: usize, misses: impl Fn(f64) -> bool) -> f64 {
+        let mut left: f64 = 0.0;
+        for texel in 0..self.len() / channels {
+            let range = texel * channels..(texel + 1) * channels;
+            let difference = range.clone().map(|k| (self.get(k) - other.get(k)).abs()).fold(0.0, f64::max);
+            if !misses(difference) {
+                left = left.max(difference);
+                continue;
+            }
+            match (&mut *self, other) {
+                (Self::F32(to), Self::F32(from)) => to[range.clone()].copy_from_slice(&from[range]),
+                (Self::F64(to), Self::F64(from)) => to[range.clone()].copy_from_slice(&from[range]),
+                // One path makes one kind.
+                _ => {}
+            }
+        }
+        left
+    }
+
+    /// Rounded to f32, to the nearest.
+    pub fn to_f32(&self) -> Cow<'_, [f32]> {
+        match self {
+            Self::F32(values) => Cow::Borrowed(values),
+            Self::F64(values) => values.iter().map(|&v| v as f32).collect(),
+        }
+    }
+}
+
+impl From<Vec<f32>> for Values {
+    fn from(values: Vec<f32>) -> Self {
+        Self::F32(values)
+    }
+}
+
+impl From<Vec<f64>> for Values {
+    fn from(values: Vec<f64>) -> Self {
+        Self::F64(values)
+    }
+}
+
 impl Table {
     /// Samples along each axis, slowest first; without the channels.
     pub fn shape(&self) -> Vec<usize> {
@@ -86,24 +174,25 @@ impl Table {
         indices(&self.shape(), texel)
     }
 
+    /// One channel of one texel.
+    pub fn value(&self, texel: usize, channel: usize) -> f64 {
+        self.values.get(texel * self.channels.len() + channel)
+    }
+
     /// The channels of one texel.
-    pub fn texel(&self, texel: usize) -> &[f32] {
-        let n = self.channels.len();
-        &self.values[texel * n..(texel + 1) * n]
+    pub fn texel(&self, texel: usize) -> Vec<f64> {
+        (0..self.channels.len()).map(|channel| self.value(texel, channel)).collect()
     }
 
     /// Refuses a table with a value that is not finite or is negative: the device may not say so
     /// itself (WGSL lets an implementation assume that NaN does not occur), so the host looks.
     pub fn check_sane(&self) -> Result<()> {
         let channels = self.channels.len();
-        let Some(at) = self.values.iter().position(|v| !v.is_finite() || v.is_sign_negative() && *v != 0.0)
-        else {
-            return Ok(());
-        };
+        let Some(at) = self.values.iter().position(|v| !v.is_finite() || v < 0.0) else { return Ok(()) };
         Err(Error::Promise(format!(
             "table {}: {} at {}; a BRDF is finite and non-negative",
             self.name,
-            self.values[at],
+            self.values.show(at),
             self.place(at / channels),
         )))
     }

@@ -147,6 +147,7 @@ fn summary(say: &Say, plan: &Plan, baked: &Baked) -> Result<()> {
         ms("compose", s.compose),
         ms("compile", s.compile),
         ms("dispatch", s.dispatch),
+        ms("certify", s.certify),
         ms("readback", s.readback),
         ms("check", s.check),
         ms("write", s.write),

@@ -14,9 +14,9 @@ use std::io::Cursor;
 /// The bytes of the file.
 pub(super) fn encode(table: &Table, provenance: &Provenance) -> Result<Vec<u8>> {
     let fault = |why: &dyn std::fmt::Display| Error::Internal(format!("table {}: EXR: {why}", table.name));
-    let stride = table.channels.len();
+    let (stride, values) = (table.channels.len(), table.values.to_f32());
     let channels = table.channels.iter().enumerate().map(|(c, name)| {
-        let samples = table.values.iter().skip(c).step_by(stride).copied().collect();
+        let samples = values.iter().skip(c).step_by(stride).copied().collect();
         AnyChannel::new(text(name), FlatSamples::F32(samples))
     });
 

@@ -32,7 +32,7 @@ pub enum Format {
     /// OpenEXR: 32-bit float, named channels, uncompressed scanlines; width is the last axis, height the
     /// product of the others, row 0 the first value; axes and provenance as attributes.
     Exr,
-    /// NumPy: little-endian float32, shape = axes in order, channel last.
+    /// NumPy: little-endian float32 or float64, as the table's values are, shape = axes in order, channel last.
     Npy,
     /// A preview to look at, not to read values from.
     Png,

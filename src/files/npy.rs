@@ -1,8 +1,9 @@
-//! NumPy files: shape = axes in order, channel last, little-endian float32, C order.
+//! NumPy files: shape = axes in order, channel last, little-endian float32 or
+//! float64, C order.
 
 use crate::error::{Error, Result};
-use crate::table::Table;
-use npyz::{DType, WriteOptions, WriterBuilder};
+use crate::table::{Table, Values};
+use npyz::{DType, Serialize, WriteOptions, WriterBuilder};
 
 /// The bytes of the file.
 pub(super) fn encode(table: &Table) -> Result<Vec<u8>> {
@@ -13,10 +14,21 @@ fn write(table: &Table) -> std::io::Result<Vec<u8>> {
     let shape = table.axes.iter().map(|axis| axis.len()).chain([table.channels.len()]);
     let shape: Vec<u64> = shape.map(|n| n as u64).collect();
     // Little-endian on every machine, so that the same table gives the same bytes.
-    let dtype = DType::Plain("<f4".parse().map_err(std::io::Error::other)?);
+    match &table.values {
+        Values::F32(values) => array("<f4", &shape, values.iter().copied()),
+        Values::F64(values) => array("<f8", &shape, values.iter().copied()),
+    }
+}
+
+fn array<T: Serialize>(
+    dtype: &str,
+    shape: &[u64],
+    values: impl Iterator<Item = T>,
+) -> std::io::Result<Vec<u8>> {
+    let dtype = DType::Plain(dtype.parse().map_err(std::io::Error::other)?);
     let mut bytes = Vec::new();
-    let mut writer = WriteOptions::new().dtype(dtype).shape(&shape).writer(&mut bytes).begin_nd()?;
-    writer.extend(table.values.iter().copied())?;
+    let mut writer = WriteOptions::new().dtype(dtype).shape(shape).writer(&mut bytes).begin_nd()?;
+    writer.extend(values)?;
     writer.finish()?;
     Ok(bytes)
 }

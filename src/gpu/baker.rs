@@ -89,7 +89,13 @@ impl Layout {
             return Self { units, texels, padded: texels, channels, precision };
         }
         let texels = table.axes.last().map_or(1, |axis| axis.len());
-        Self { units: table.texels() / texels, texels, padded: texels.next_multiple_of(4), channels, precision: Precision::F32 }
+        Self {
+            units: table.texels() / texels,
+            texels,
+            padded: texels.next_multiple_of(4),
+            channels,
+            precision: Precision::F32,
+        }
     }
 
     /// Bytes of so many units.

@@ -4,7 +4,8 @@ use super::baker::{Baker, Layout, Step, Tile};
 use super::device::Device;
 use crate::bake::Stages;
 use crate::error::{Error, Result};
-use crate::plan::TablePlan;
+use crate::plan::{Precision, TablePlan};
+use crate::table::Values;
 use std::sync::mpsc;
 use std::time::Instant;
 
@@ -14,15 +15,16 @@ impl Device {
     pub(crate) fn evaluate(
         &self,
         table: &TablePlan,
+        precision: Precision,
         times: &mut Stages,
         tick: &(impl Fn(f64) -> Result<()> + Sync),
-    ) -> Result<Vec<f32>> {
+    ) -> Result<Values> {
         let start = Instant::now();
         let composed = self.baker.compose_seconds();
-        let layout = Layout::new(table);
-        let stages = self.baker.stages(table)?;
+        let layout = Layout::new(table, precision);
+        let stages = self.baker.stages(table, precision)?;
         let tiles = layout.tiles(&stages);
-        let mut values = Vec::with_capacity(table.texels() * layout.channels);
+        let mut bytes = Vec::with_capacity(layout.bytes(layout.units));
         times.compile += start.elapsed().as_secs_f64();
         for units in &tiles {
             let start = Instant::now();
@@ -32,13 +34,17 @@ impl Device {
             self.run(&tile, &|share| tick(share / tiles.len() as f64))?;
             times.dispatch += start.elapsed().as_secs_f64();
             let start = Instant::now();
-            self.read_back(&tile, &layout, &mut values)?;
+            self.read_back(&tile, &layout, &mut bytes)?;
             times.readback += start.elapsed().as_secs_f64();
         }
         let composing = self.baker.compose_seconds() - composed;
         times.compose += composing;
         times.compile -= composing;
-        Ok(values)
+        Ok(match layout.precision {
+            // Copied number by number: a byte vector need not be aligned.
+            Precision::F32 => Values::F32(bytemuck::pod_collect_to_vec(&bytes)),
+            Precision::F64 => Values::F64(bytemuck::pod_collect_to_vec(&bytes)),
+        })
     }
 
     fn run(&self, tile: &Tile, tick: &impl Fn(f64) -> Result<()>) -> Result<()> {
@@ -65,8 +71,8 @@ impl Device {
         Ok(())
     }
 
-    /// Appends a tile's values, without their padding.
-    fn read_back(&self, tile: &Tile, layout: &Layout, values: &mut Vec<f32>) -> Result<()> {
+    /// Appends a tile's values as bytes, without their padding.
+    fn read_back(&self, tile: &Tile, layout: &Layout, bytes: &mut Vec<u8>) -> Result<()> {
         let Baker { device, queue, .. } = &self.baker;
         let staging = device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
@@ -86,10 +92,9 @@ impl Device {
         let lost = |why: String| Error::Device(format!("{}: cannot read results back: {why}", self.name()));
         receiver.recv().map_err(|e| lost(e.to_string()))?.map_err(|e| lost(e.to_string()))?;
         let view = staging.get_mapped_range(..).map_err(|e| lost(e.to_string()))?;
-        let (row, kept) = (layout.padded * layout.channels * 4, layout.texels * layout.channels * 4);
-        for row in view.chunks_exact(row) {
-            // Bytes of f32s, whatever their alignment.
-            values.extend(row[..kept].chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])));
+        let number = layout.channels * layout.precision.bytes();
+        for row in view.chunks_exact(layout.padded * number) {
+            bytes.extend_from_slice(&row[..layout.texels * number]);
         }
         Ok(())
     }

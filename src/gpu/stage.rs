@@ -50,7 +50,13 @@ pub(super) struct Job {
 }
 
 impl Stages {
-    pub fn new(baker: &Baker, lobe: &Lobe, work: &Work, accumulate: bool, precision: Precision) -> Result<Self> {
+    pub fn new(
+        baker: &Baker,
+        lobe: &Lobe,
+        work: &Work,
+        accumulate: bool,
+        precision: Precision,
+    ) -> Result<Self> {
         let upload = Upload { baker, precision };
         let channels = lobe.weights.len();
         let job = Job { accumulate: u32::from(accumulate), ..Job::new(lobe) };
@@ -154,8 +160,10 @@ impl Stage {
 impl Job {
     fn new(lobe: &Lobe) -> Self {
         let mut weights = [[0.0; 4]; 3];
-        for (row, [a, b]) in weights.iter_mut().zip(&lobe.weights) {
-            *row = [*a as f32, *b as f32, 0.0, 0.0];
+        for (row, &[a, b]) in weights.iter_mut().zip(&lobe.weights) {
+            // What f32 drops is kept for kernels in f64.
+            let rest = |x: f64| (x - f64::from(x as f32)) as f32;
+            *row = [a as f32, b as f32, rest(a), rest(b)];
         }
         Self { weights, ..Self::zeroed() }
     }
