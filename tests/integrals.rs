@@ -194,7 +194,8 @@ fn largest_difference(a: &Table, b: &Table) -> f64 {
 }
 
 /// Every tolerance is met, at every extreme: in f32 down to 1e-6, in f64 on the device (where it has
-/// it) below. The reference is good to 2e-10, which is what the smallest may miss by.
+/// it) below. The reference is good to 1e-10, which is what the smallest may miss by; it takes ωe·ωm over
+/// μ, where 1e-16 becomes 1e-9 at μ = 1e-7, so that tolerances beyond 1e-7 are tried from μ = 1e-3.
 #[test]
 fn meet_every_tolerance() {
     let mus = [1e-7, 1e-5, 1e-3, 0.03, 0.2, 0.5, 0.9, 1.0];
@@ -202,16 +203,21 @@ fn meet_every_tolerance() {
     for model in MODELS {
         for decade in 1..=9 {
             let tolerance = 10f64.powi(-decade);
+            let (mus, thetas) = if decade > 7 {
+                (&mus[2..], &extreme_thetas()[..6])
+            } else {
+                (&mus[..], &extreme_thetas()[..])
+            };
             let plans = [
-                basis(&SPLIT_SUM, model, &roughness, vec![listed(Mu, &mus)]),
-                basis(&RHO_DH, model, &roughness, vec![listed(ThetaI, &extreme_thetas())]),
+                basis(&SPLIT_SUM, model, &roughness, vec![listed(Mu, mus)]),
+                basis(&RHO_DH, model, &roughness, vec![listed(ThetaI, thetas)]),
                 basis(&RHO_HH, model, &roughness[2..], vec![]),
             ];
             for plan in plans {
                 let plan = plan.with_tolerance(tolerance);
                 let table = bake(device(), &plan, Check::All);
                 let worst = table.error.measured_max.unwrap();
-                assert!(worst <= tolerance + 2e-10, "{plan} ({}): {:?}", table.precision, table.error);
+                assert!(worst <= tolerance + 1e-10, "{plan} ({}): {:?}", table.precision, table.error);
                 assert!(table.error.estimate.unwrap() <= tolerance, "{plan}: {:?}", table.error);
             }
         }

@@ -42,7 +42,7 @@ fn agree_with_the_reference_at_every_input() {
             let table = bake(evaluator, &plan, Check::All);
             assert_eq!(table.error.texels_checked, plan.texels());
             let worst = table.error.measured_max.unwrap();
-            assert!(table.precision.contains("f32"), "{}", table.precision);
+            assert!(!table.rule.contains("on the CPU"), "{}", table.rule);
             println!("{} {}: {worst:.2e} over {} values", plan.subject, table.precision, table.values.len());
             assert!(worst <= budget, "{} {}: {:?}", plan.subject, table.precision, table.error);
         }

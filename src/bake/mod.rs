@@ -117,11 +117,7 @@ impl Evaluator {
             axes: plan.axes.clone(),
             channels: plan.channels.clone(),
             values,
-            rule: if plan.quantity.evaluation == Evaluation::Value {
-                "pointwise".into()
-            } else {
-                plan.rule.to_string()
-            },
+            rule: path.rule(plan, self),
             precision: path.name().into(),
             error,
             seconds,
@@ -219,11 +215,23 @@ impl Path<'_> {
         })
     }
 
+    /// The rule, and where it ran if that was not the evaluator's own place.
+    fn rule(self, plan: &TablePlan, evaluator: &Evaluator) -> String {
+        let value = plan.quantity.evaluation == Evaluation::Value;
+        let rule = if value { "pointwise".into() } else { plan.rule.to_string() };
+        match (self, evaluator) {
+            (Self::Cpu(_), Evaluator::Device(_)) => {
+                format!("{rule}, on the CPU: f32 cannot meet the tolerance")
+            }
+            _ => rule,
+        }
+    }
+
+    /// The arithmetic.
     fn name(self) -> &'static str {
         match self {
             Self::Device(_, precision) => precision.name(),
-            Self::Cpu(Precision::F32) => "f64 (CPU), stored as f32",
-            Self::Cpu(Precision::F64) => "f64 (CPU)",
+            Self::Cpu(_) => "f64",
         }
     }
 }
