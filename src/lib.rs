@@ -77,6 +77,7 @@ pub mod plan;
 pub mod quadrature;
 pub mod quantity;
 pub mod reference;
+mod sampling;
 pub mod scene;
 mod slopes;
 pub mod table;

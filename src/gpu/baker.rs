@@ -2,9 +2,9 @@
 
 use super::compose::{Kernel, compose, validate};
 use super::stage::{Job, Stage, Stages};
+use crate::axis::Variable;
 use crate::error::{Error, Result};
 use crate::models::Model;
-use crate::axis::Variable;
 use crate::plan::TablePlan;
 use crate::quantity::Evaluation;
 use crate::slopes::TILE_ALPHAS;
@@ -185,7 +185,8 @@ impl Baker {
     ) -> Result<()> {
         let pipeline = self.pipeline(stage.kernel, stage.model, stage.channels)?;
         let layout = pipeline.get_bind_group_layout(0);
-        let range = units.start / stage.units * stage.per_unit..units.end.div_ceil(stage.units) * stage.per_unit;
+        let range =
+            units.start / stage.units * stage.per_unit..units.end.div_ceil(stage.units) * stage.per_unit;
         let base = count(units.start * stage.per_unit)?;
         let per_step = (EVALUATIONS_PER_DISPATCH / stage.cost).clamp(WORKGROUP, INVOCATIONS_PER_DISPATCH);
         for first in range.clone().step_by(per_step) {

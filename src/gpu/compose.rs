@@ -5,7 +5,7 @@
 //! no switch over models is left for the device to run.
 
 use crate::error::{Error, Result};
-use crate::models::{Model, Part};
+use crate::models::{Integral, Model, Part};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// A kernel: one entry point.
@@ -17,6 +17,12 @@ pub enum Kernel {
     Slopes,
     /// Integrals over (θe, δφ).
     Product,
+    /// Integrals by sampling the distribution of normals.
+    Ndf,
+    /// Integrals by sampling the visible normals.
+    Vndf,
+    /// The same, at random.
+    Random,
     /// Integrals in closed form.
     Analytic,
     /// The outer sums, into channels.
@@ -55,7 +61,28 @@ pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize) -> String
             _ => add("kernel/store_3", shader!("kernel/store_3")),
         }
     }
+    if let (
+        Kernel::Ndf | Kernel::Vndf | Kernel::Random,
+        Some(Model { integral: Integral::Slopes(slopes), .. }),
+    ) = (kernel, model)
+    {
+        let Part { name, wgsl } = slopes.sampling.part;
+        add(name, wgsl);
+        add("kernel/sampling", shader!("kernel/sampling"));
+    }
     match kernel {
+        Kernel::Ndf => {
+            add("sampling/ndf", shader!("sampling/ndf"));
+            add("sampling/tabulated", shader!("sampling/tabulated"));
+        }
+        Kernel::Vndf => {
+            add("sampling/vndf", shader!("sampling/vndf"));
+            add("sampling/tabulated", shader!("sampling/tabulated"));
+        }
+        Kernel::Random => {
+            add("sampling/vndf", shader!("sampling/vndf"));
+            add("sampling/random", shader!("sampling/random"));
+        }
         Kernel::Values => add("kernel/values", shader!("kernel/values")),
         Kernel::Slopes => add("kernel/slopes", shader!("kernel/slopes")),
         Kernel::Product => add("kernel/product", shader!("kernel/product")),
