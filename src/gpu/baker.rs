@@ -71,7 +71,7 @@ pub(super) struct Layout {
 
 /// What a dispatch may cost: 8 million evaluations stay below 100 ms on two cores of software
 /// Vulkan, at 100 million a second.
-const EVALUATIONS_PER_DISPATCH: usize = 1 << 23;
+pub(super) const EVALUATIONS_PER_DISPATCH: usize = 1 << 23;
 /// 64 a workgroup, and at most 65,535 workgroups.
 const INVOCATIONS_PER_DISPATCH: usize = 1 << 21;
 /// Bytes of a tile's result, and of the raw integrals behind it.

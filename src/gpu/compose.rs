@@ -29,6 +29,10 @@ pub enum Kernel {
     Sum,
     /// Texels of a texture.
     Pack,
+    /// Nothing but stores.
+    Fill,
+    /// Nothing but arithmetic.
+    MultiplyAdd,
 }
 
 macro_rules! shader {
@@ -42,8 +46,11 @@ const PRECISION: &str = "alias real = f32;\nalias real2 = vec2<real>;\nalias rea
 
 /// The WGSL of `kernel` for `model` (none: kernels that evaluate no model) and so many channels.
 pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize) -> String {
-    if kernel == Kernel::Pack {
-        return shader!("kernel/pack").into();
+    match kernel {
+        Kernel::Pack => return shader!("kernel/pack").into(),
+        Kernel::Fill => return shader!("probe/fill").into(),
+        Kernel::MultiplyAdd => return shader!("probe/multiply_add").into(),
+        _ => {}
     }
     let mut source = String::from(PRECISION);
     let mut add = |name: &str, wgsl: &str| source.push_str(&format!("\n// ---- {name}\n{wgsl}"));
@@ -88,7 +95,7 @@ pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize) -> String
         Kernel::Product => add("kernel/product", shader!("kernel/product")),
         Kernel::Analytic => add("kernel/analytic", shader!("kernel/analytic")),
         Kernel::Sum => add("kernel/sum", shader!("kernel/sum")),
-        Kernel::Pack => {}
+        Kernel::Pack | Kernel::Fill | Kernel::MultiplyAdd => {}
     }
     source
 }

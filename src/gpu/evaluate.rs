@@ -58,7 +58,7 @@ impl Device {
         self.wait()
     }
 
-    fn wait(&self) -> Result<()> {
+    pub(super) fn wait(&self) -> Result<()> {
         let polled = self.baker.device.poll(wgpu::PollType::wait_indefinitely());
         self.fault()?;
         polled.map_err(|e| Error::Device(format!("{}: {e}", self.name())))?;
@@ -66,7 +66,7 @@ impl Device {
     }
 
     /// Appends a tile's values, without their padding.
-    fn read_back(&self, tile: &Tile, layout: &Layout, values: &mut Vec<f32>) -> Result<()> {
+    pub(super) fn read_back(&self, tile: &Tile, layout: &Layout, values: &mut Vec<f32>) -> Result<()> {
         let Baker { device, queue, .. } = &self.baker;
         let staging = device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
