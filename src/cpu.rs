@@ -73,6 +73,11 @@ fn integrate(work: &Work, inner: &Inner, lobe: &Lobe, row: usize, k: usize) -> [
                 }
             }
         }
+        Inner::Samples(work) if alpha < ALPHA_MIN_INTEGRAL => {
+            let mu = work.mus[k / work.chunks];
+            return (work.mirror_limit)(mu).map(|f| f * work.chunk as f64);
+        }
+        Inner::Samples(work) => return work.sum(row, k, alpha),
         Inner::Product { pairs, azimuths } => {
             for azimuth in azimuths {
                 add(azimuth.weight, (lobe.model.lobe)(&pairs[k], azimuth, alpha));

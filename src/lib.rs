@@ -21,6 +21,7 @@
 //! | [`gpu`] | composing, validating and recording the kernels that a plan needs | scenes, files |
 //! | [`mod@reference`] | the textbook's formulas in f64, adaptive quadrature | everything else |
 //! | [`check`] | a table's texels against the reference | how they were computed |
+//! | [`trade`] | every method at every cost: time and error, and the front | files, devices |
 //! | [`bake`] | the order of it all: evaluate, look, check, write | how any of it is done |
 //! | [`table`], [`axis`], [`quantity`] | what a table is | where it came from |
 //! | `files` | EXR, NPY, PNG, the manifest; sets written all or nothing | physics |
@@ -77,9 +78,11 @@ pub mod plan;
 pub mod quadrature;
 pub mod quantity;
 pub mod reference;
+mod sampling;
 pub mod scene;
 mod slopes;
 pub mod table;
+pub mod trade;
 mod work;
 
 pub use error::{Error, Result};

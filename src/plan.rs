@@ -7,8 +7,9 @@ pub use requirements::{Basis, MaterialPlan, Plan, Selection};
 
 use crate::axis::{Axis, Variable};
 use crate::error::{Error, Result};
-use crate::models::{ALPHA_MIN_VALUE, Model};
+use crate::models::{ALPHA_MIN_VALUE, Integral, Model};
 use crate::quantity::{Evaluation, Quantity};
+use crate::sampling::CHUNK;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -83,13 +84,70 @@ pub enum Rule {
         /// Cells in φ ∈ [0, 2π); even, as the two halves are alike.
         phi: usize,
     },
+    /// Gauss–Legendre over the same (θ, φ).
+    Gauss {
+        /// Nodes in θ ∈ [0, π/2].
+        theta: usize,
+        /// Nodes in φ ∈ [0, 2π); even, as the two halves are alike.
+        phi: usize,
+    },
+    /// Importance sampling of the distribution of normals by Hammersley's points: what most bakers do.
+    Hammersley {
+        /// Samples a texel: up to 1024, or a multiple of it.
+        samples: usize,
+    },
+    /// Importance sampling of the visible normals by Hammersley's points.
+    Vndf {
+        /// Samples a texel: up to 1024, or a multiple of it.
+        samples: usize,
+    },
+    /// Importance sampling of the visible normals at random, each texel for itself.
+    Random {
+        /// Samples a texel: up to 1024, or a multiple of it.
+        samples: usize,
+    },
+}
+
+impl Rule {
+    /// Its name in recipes and files.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Warped => "warped",
+            Self::Grid { .. } => "grid",
+            Self::Gauss { .. } => "gauss",
+            Self::Hammersley { .. } => "hammersley",
+            Self::Vndf { .. } => "vndf",
+            Self::Random { .. } => "random",
+        }
+    }
+
+    /// Samples a texel, if it samples.
+    fn samples(&self) -> Option<usize> {
+        match *self {
+            Self::Hammersley { samples } | Self::Vndf { samples } | Self::Random { samples } => Some(samples),
+            Self::Warped | Self::Grid { .. } | Self::Gauss { .. } => None,
+        }
+    }
+
+    /// Nodes in θ and φ, if it is a product of them.
+    fn nodes(&self) -> Option<[usize; 2]> {
+        match *self {
+            Self::Grid { theta, phi } | Self::Gauss { theta, phi } => Some([theta, phi]),
+            _ => None,
+        }
+    }
 }
 
 impl fmt::Display for Rule {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Warped => f.write_str("warped"),
-            Self::Grid { theta, phi } => write!(f, "grid {theta} θ × {phi} φ"),
+            Self::Grid { theta, phi } | Self::Gauss { theta, phi } => {
+                write!(f, "{} {theta} θ × {phi} φ", self.name())
+            }
+            Self::Hammersley { samples } | Self::Vndf { samples } | Self::Random { samples } => {
+                write!(f, "{}, {samples} samples", self.name())
+            }
         }
     }
 }
@@ -159,8 +217,11 @@ impl TablePlan {
                     ALPHA_MIN_VALUE.sqrt()
                 ));
             }
-            if matches!(self.rule, Rule::Grid { .. }) && low < ALPHA_MIN_VALUE {
-                return refuse(format!("the grid rule cannot see a lobe of α = {low}; use the warped rule"));
+            if self.rule.nodes().is_some() && low < ALPHA_MIN_VALUE {
+                return refuse(format!(
+                    "the {} rule cannot see a lobe of α = {low}; use the warped rule",
+                    self.rule.name()
+                ));
             }
         }
         if swept && !self.lobes.iter().any(|lobe| lobe.model.has_roughness) {
@@ -178,17 +239,49 @@ impl TablePlan {
                  samples of θ or μ, or a coarser grid"
             ));
         }
-        if let Rule::Grid { theta, phi } = self.rule {
-            let hemispherical = self.quantity.evaluation == Evaluation::Hemispherical;
-            let most = if hemispherical { MAX_GRID_RHO_HH } else { MAX_GRID };
-            let fits = (1..=most).contains(&theta) && (2..=MAX_GRID).contains(&phi);
+        if let Err(why) = self.check_rule() {
+            return refuse(why);
+        }
+        Ok(self)
+    }
+
+    /// Why the rule does not fit the quantity and the lobes, if it does not.
+    fn check_rule(&self) -> Result<(), String> {
+        let mean = self.quantity.evaluation == Evaluation::Hemispherical;
+        let name = self.rule.name();
+        if let Some([theta, phi]) = self.rule.nodes() {
+            let finest = if matches!(self.rule, Rule::Gauss { .. }) { MAX_GAUSS } else { MAX_GRID };
+            let most = if mean { MAX_GRID_RHO_HH } else { finest };
+            let fits = (1..=most).contains(&theta) && (2..=finest).contains(&phi);
             if !fits || phi % 2 == 1 {
-                return refuse(format!(
-                    "a grid of {theta} × {phi}; give θ from 1 to {most}, and φ from 2 to {MAX_GRID}, even"
+                return Err(format!(
+                    "a {name} of {theta} × {phi}; give θ from 1 to {most}, and φ from 2 to {finest}, even"
                 ));
             }
         }
-        Ok(self)
+        if let Some(samples) = self.rule.samples() {
+            let most = if mean { MAX_SAMPLES_RHO_HH } else { MAX_SAMPLES };
+            if samples == 0 || samples > most || samples > CHUNK && samples % CHUNK != 0 {
+                return Err(format!(
+                    "{samples} samples; give 1 to {CHUNK}, or a multiple of it up to {most}"
+                ));
+            }
+        }
+        for Lobe { model, .. } in &self.lobes {
+            let fits = match model.integral {
+                Integral::Slopes(_) => true,
+                Integral::Smooth(_) => self.rule.samples().is_none(),
+                Integral::Delta(_) => matches!(self.rule, Rule::Warped | Rule::Grid { .. }),
+            };
+            if !fits {
+                let what = if model.is_delta() { "a delta" } else { "no microfacet lobe" };
+                return Err(format!(
+                    "{} is {what}, and nothing for the {name} rule; use the warped rule",
+                    model.name
+                ));
+            }
+        }
+        Ok(())
     }
 
     /// Factors that an evaluator holds at once: one for each pair of directions, given or of nodes.
@@ -196,7 +289,7 @@ impl TablePlan {
         /// No less than any warped rule has in one of its dimensions.
         const NODES: usize = 64;
         let count = |axis: Option<&Axis>| axis.map_or(1, Axis::len);
-        let nodes = if let Rule::Grid { theta, .. } = self.rule { theta } else { NODES };
+        let nodes = self.rule.nodes().map_or(NODES, |[theta, _]| theta);
         match self.quantity.evaluation {
             Evaluation::Value => {
                 count(self.axis(Variable::ThetaI)).saturating_mul(count(self.axis(Variable::ThetaE)))
@@ -280,6 +373,11 @@ const MAX_FACTORS: usize = 1 << 22;
 pub(crate) const MAX_GRID: usize = 16_384;
 /// The finest θ of a grid under the mean over directions, which one invocation sums as well.
 const MAX_GRID_RHO_HH: usize = 512;
+/// The finest Gauss–Legendre rule: beyond it the host takes seconds to find the nodes.
+pub(crate) const MAX_GAUSS: usize = 4096;
+/// The most samples: what one invocation sums in turn, as chunks.
+pub(crate) const MAX_SAMPLES: usize = 1 << 22;
+const MAX_SAMPLES_RHO_HH: usize = 1 << 19;
 
 impl fmt::Display for TablePlan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

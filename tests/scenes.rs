@@ -7,6 +7,7 @@
 #[allow(dead_code, missing_docs)]
 mod make_demo_scene;
 
+use gonio::plan::Rule;
 use gonio::scene::{Distribution, Material, Scene, SubjectRequest, Weights, read};
 use make_demo_scene::ROUGHNESS;
 use serde_json::{Value, json};
@@ -430,7 +431,10 @@ fn the_commented_recipe_is_read() {
     assert_eq!(brdf.subject, SubjectRequest::Material("gold".into()));
     assert_eq!((dfg.name.as_deref(), dfg.tolerance), (Some("dfg"), Some(1e-5)));
     assert_eq!(dfg.axes[0].range, [1e-3, 1.0]);
-    assert_eq!((plaster.grid, &plaster.axes[0].values), (Some([256, 512]), &vec![0.0, 0.5, 1.0, 1.5]));
+    assert_eq!(
+        (plaster.rule, &plaster.axes[0].values),
+        (Some(Rule::Grid { theta: 256, phi: 512 }), &vec![0.0, 0.5, 1.0, 1.5])
+    );
     assert_eq!(average.subject, SubjectRequest::Basis { model: "ggx".into(), roughness: Some(0.5) });
     assert!(brdf.place.contains("recipe.toml: line "));
 }

@@ -251,6 +251,9 @@ pub fn within_tolerance(plan: &TablePlan, table: &Table) -> Result<()> {
     let place: Vec<_> = table.error.worst.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let remedy = match plan.rule {
         Rule::Grid { .. } => "take a finer grid or the warped rule",
+        Rule::Gauss { .. } | Rule::Hammersley { .. } | Rule::Vndf { .. } | Rule::Random { .. } => {
+            "take more nodes or samples, or the warped rule"
+        }
         // No table is better than the f32 that it is stored in.
         Rule::Warped if table.precision == "f32" && plan.tolerance > STORED_F32 => {
             "allow more, or bake with --device cpu, which is f64"

@@ -10,10 +10,12 @@ mod panel;
 mod png;
 mod scale;
 mod set;
+mod tradeoff;
 
 pub use entry::TableEntry;
 pub use manifest::{read_manifest, sha256, verify};
 pub use set::{Files, TableSet};
+pub(crate) use tradeoff::draw as draw_trade;
 
 use crate::error::{Error, Result};
 use crate::table::Table;

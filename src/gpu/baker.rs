@@ -8,6 +8,7 @@ use crate::models::Model;
 use crate::plan::{Precision, TablePlan};
 use crate::quantity::Evaluation;
 use crate::slopes::TILE_ALPHAS;
+use crate::table::Values;
 use crate::work::Work;
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -73,7 +74,7 @@ pub(super) struct Layout {
 
 /// What a dispatch may cost: 8 million evaluations stay below 100 ms on two cores of software
 /// Vulkan, at 100 million a second.
-const EVALUATIONS_PER_DISPATCH: usize = 1 << 23;
+pub(super) const EVALUATIONS_PER_DISPATCH: usize = 1 << 23;
 /// 64 a workgroup, and at most 65,535 workgroups.
 const INVOCATIONS_PER_DISPATCH: usize = 1 << 21;
 /// Bytes of a tile's result, and of the raw integrals behind it.
@@ -101,6 +102,15 @@ impl Layout {
     /// Bytes of so many units.
     pub fn bytes(&self, units: usize) -> usize {
         units * self.padded * self.channels * self.precision.bytes()
+    }
+
+    /// The values that bytes without padding hold.
+    pub fn values(&self, bytes: &[u8]) -> Values {
+        match self.precision {
+            // Copied number by number: bytes need not be aligned.
+            Precision::F32 => Values::F32(bytemuck::pod_collect_to_vec(bytes)),
+            Precision::F64 => Values::F64(bytemuck::pod_collect_to_vec(bytes)),
+        }
     }
 
     /// The ranges of units that fit a tile each, by size alone: results must not depend on speed.

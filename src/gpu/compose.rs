@@ -5,7 +5,7 @@
 //! no switch over models is left for the device to run.
 
 use crate::error::{Error, Result};
-use crate::models::{Model, Part};
+use crate::models::{Integral, Model, Part};
 use crate::plan::Precision;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
@@ -18,12 +18,22 @@ pub enum Kernel {
     Slopes,
     /// Integrals over (θe, δφ).
     Product,
+    /// Integrals by sampling the distribution of normals.
+    Ndf,
+    /// Integrals by sampling the visible normals.
+    Vndf,
+    /// The same, at random.
+    Random,
     /// Integrals in closed form.
     Analytic,
     /// The outer sums, into channels.
     Sum,
     /// Texels of a texture.
     Pack,
+    /// Nothing but stores.
+    Fill,
+    /// Nothing but arithmetic.
+    MultiplyAdd,
 }
 
 macro_rules! shader {
@@ -34,8 +44,11 @@ macro_rules! shader {
 
 /// The WGSL of `kernel` for `model` (none: kernels that evaluate no model) and so many channels.
 pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize, precision: Precision) -> String {
-    if kernel == Kernel::Pack {
-        return shader!("kernel/pack").into();
+    match kernel {
+        Kernel::Pack => return shader!("kernel/pack").into(),
+        Kernel::Fill => return shader!("probe/fill").into(),
+        Kernel::MultiplyAdd => return shader!("probe/multiply_add").into(),
+        _ => {}
     }
     // One source for both: no kernel calls a transcendental built-in, which f64 lacks.
     let real = precision.name();
@@ -55,13 +68,34 @@ pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize, precision
             _ => add("kernel/store_3", shader!("kernel/store_3")),
         }
     }
+    if let (
+        Kernel::Ndf | Kernel::Vndf | Kernel::Random,
+        Some(Model { integral: Integral::Slopes(slopes), .. }),
+    ) = (kernel, model)
+    {
+        let Part { name, wgsl } = slopes.sampling.part;
+        add(name, wgsl);
+        add("kernel/sampling", shader!("kernel/sampling"));
+    }
     match kernel {
+        Kernel::Ndf => {
+            add("sampling/ndf", shader!("sampling/ndf"));
+            add("sampling/tabulated", shader!("sampling/tabulated"));
+        }
+        Kernel::Vndf => {
+            add("sampling/vndf", shader!("sampling/vndf"));
+            add("sampling/tabulated", shader!("sampling/tabulated"));
+        }
+        Kernel::Random => {
+            add("sampling/vndf", shader!("sampling/vndf"));
+            add("sampling/random", shader!("sampling/random"));
+        }
         Kernel::Values => add("kernel/values", shader!("kernel/values")),
         Kernel::Slopes => add("kernel/slopes", shader!("kernel/slopes")),
         Kernel::Product => add("kernel/product", shader!("kernel/product")),
         Kernel::Analytic => add("kernel/analytic", shader!("kernel/analytic")),
         Kernel::Sum => add("kernel/sum", shader!("kernel/sum")),
-        Kernel::Pack => {}
+        Kernel::Pack | Kernel::Fill | Kernel::MultiplyAdd => {}
     }
     source
 }

@@ -40,11 +40,7 @@ impl Device {
         let composing = self.baker.compose_seconds() - composed;
         times.compose += composing;
         times.compile -= composing;
-        Ok(match layout.precision {
-            // Copied number by number: a byte vector need not be aligned.
-            Precision::F32 => Values::F32(bytemuck::pod_collect_to_vec(&bytes)),
-            Precision::F64 => Values::F64(bytemuck::pod_collect_to_vec(&bytes)),
-        })
+        Ok(layout.values(&bytes))
     }
 
     fn run(&self, tile: &Tile, tick: &impl Fn(f64) -> Result<()>) -> Result<()> {
@@ -64,7 +60,7 @@ impl Device {
         self.wait()
     }
 
-    fn wait(&self) -> Result<()> {
+    pub(super) fn wait(&self) -> Result<()> {
         let polled = self.baker.device.poll(wgpu::PollType::wait_indefinitely());
         self.fault()?;
         polled.map_err(|e| Error::Device(format!("{}: {e}", self.name())))?;
@@ -72,7 +68,7 @@ impl Device {
     }
 
     /// Appends a tile's values as bytes, without their padding.
-    fn read_back(&self, tile: &Tile, layout: &Layout, bytes: &mut Vec<u8>) -> Result<()> {
+    pub(super) fn read_back(&self, tile: &Tile, layout: &Layout, bytes: &mut Vec<u8>) -> Result<()> {
         let Baker { device, queue, .. } = &self.baker;
         let staging = device.create_buffer(&wgpu::BufferDescriptor {
             label: None,

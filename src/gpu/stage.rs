@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::models::{ALPHA_MIN_INTEGRAL, Model};
 use crate::pair::{Azimuth, Pair};
 use crate::plan::{Lobe, Precision};
+use crate::sampling::Sampler;
 use crate::slopes::TILE_ALPHAS;
 use crate::work::{Inner, Work, WorkKind};
 use bytemuck::{Pod, Zeroable};
@@ -107,13 +108,7 @@ impl Stage {
     fn inner(upload: &Upload, inner: &Inner, alphas: &[f64]) -> Result<Self> {
         let (kernel, azimuths, nodes, inputs) = match inner {
             Inner::Slopes(work) => {
-                // What is so near the mirror that it is the mirror's in f64 is 0 to the kernel.
-                let mut alphas: Vec<_> = alphas
-                    .iter()
-                    .map(|&alpha| if alpha < ALPHA_MIN_INTEGRAL { 0.0 } else { alpha })
-                    .collect();
-                let rows = alphas.len();
-                alphas.resize(rows.next_multiple_of(TILE_ALPHAS), 1.0);
+                let (alphas, rows) = fours(alphas);
                 let pair = |[a, b]: [Range<usize>; 2]| [a.start, a.len(), b.start, b.len()].map(|n| n as u32);
                 let columns: Vec<_> = work.columns.iter().cloned().map(pair).collect();
                 let tiles: Vec<_> = work.tiles().map(pair).collect();
@@ -132,6 +127,19 @@ impl Stage {
                 let inputs = vec![upload.reals(alphas), upload.pairs(pairs), upload.azimuths(azimuths)];
                 (Kernel::Product, azimuths.len(), 0, inputs)
             }
+            Inner::Samples(work) => {
+                let (alphas, rows) = fours(alphas);
+                let mut inputs = vec![upload.reals(&alphas), upload.reals(&work.mus)];
+                let kernel = match work.sampler {
+                    Sampler::Ndf => Kernel::Ndf,
+                    Sampler::Vndf => Kernel::Vndf,
+                    Sampler::Random => Kernel::Random,
+                };
+                if !work.draws.is_empty() {
+                    inputs.push(upload.reals(work.draws.as_flattened()));
+                }
+                (kernel, work.chunk, rows, inputs)
+            }
             Inner::Analytic { mus, .. } => {
                 (Kernel::Analytic, 0, 0, vec![upload.reals(alphas), upload.reals(mus)])
             }
@@ -142,7 +150,7 @@ impl Stage {
             nodes: count(nodes)?,
             ..Job::zeroed()
         };
-        let units = if kernel == Kernel::Slopes { TILE_ALPHAS } else { 1 };
+        let units = if matches!(inner, Inner::Slopes(_) | Inner::Samples(_)) { TILE_ALPHAS } else { 1 };
         Ok(Self {
             kernel,
             model: None,
@@ -155,6 +163,15 @@ impl Stage {
             cost: units * inner.cost(),
         })
     }
+}
+
+/// α padded to whole fours, and how many there were. What is so near the mirror that it is the mirror's
+/// in f64 is 0 to the kernels.
+fn fours(alphas: &[f64]) -> (Vec<f64>, usize) {
+    let mut padded: Vec<_> =
+        alphas.iter().map(|&alpha| if alpha < ALPHA_MIN_INTEGRAL { 0.0 } else { alpha }).collect();
+    padded.resize(alphas.len().next_multiple_of(TILE_ALPHAS), 1.0);
+    (padded, alphas.len())
 }
 
 impl Job {

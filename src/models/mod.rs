@@ -85,6 +85,19 @@ pub struct Slopes {
     pub(crate) nodes: fn(mu: f64, alpha: f64, tolerance: f64) -> [usize; 2],
     /// What α → 0 tends to.
     pub(crate) mirror_limit: fn(mu_e: f64) -> [f64; 2],
+    /// What peers do in place of all that.
+    pub(crate) sampling: Sampling,
+}
+
+/// Importance sampling of a microfacet lobe: (A, B) of f μi / p for a draw of two numbers, the second
+/// the cosine of an azimuth.
+pub(crate) struct Sampling {
+    /// The functions that the sampling kernels call.
+    pub part: Part,
+    /// Of the normals' distribution.
+    pub ndf: fn(draw: [f64; 2], mu_e: f64, alpha: f64) -> [f64; 2],
+    /// Of the normals that ωe sees.
+    pub vndf: fn(draw: [f64; 2], mu_e: f64, alpha: f64) -> [f64; 2],
 }
 
 /// The smallest α > 0 that has values: below it, f of both directions at grazing would leave f32.

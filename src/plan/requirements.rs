@@ -341,7 +341,7 @@ fn requested(request: &TableRequest, scene: &Scene, tolerance: f64) -> Result<Ta
             TablePlan::material(name(subject), quantity, scene, subject, axes)?
         }
     };
-    let rule = request.grid.map_or(Rule::Warped, |[theta, phi]| Rule::Grid { theta, phi });
+    let rule = request.rule.unwrap_or(Rule::Warped);
     Ok(table.with_rule(rule)?.with_tolerance(request.tolerance.unwrap_or(tolerance)))
 }
 

@@ -14,6 +14,7 @@ pub use recipe::parse as parse_recipe;
 use crate::axis::Axis;
 #[cfg(feature = "scene")]
 use crate::error::{Error, Result};
+use crate::plan::Rule;
 #[cfg(feature = "scene")]
 use std::path::Path;
 use std::path::PathBuf;
@@ -87,7 +88,7 @@ pub struct TableRequest {
     /// The axes that the recipe names; the plan adds the natural ones that are missing.
     pub axes: Vec<Axis>,
     /// The integration rule; `None`: the plan's choice.
-    pub grid: Option<[usize; 2]>,
+    pub rule: Option<Rule>,
     /// This table's tolerance, in place of the recipe's.
     pub tolerance: Option<f64>,
     /// Where the request stands: "recipe.toml: line 7", for messages about it.

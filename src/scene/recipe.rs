@@ -6,7 +6,7 @@ use super::{Distribution, Material, MaterialLobe, Scene, SubjectRequest, TableRe
 use crate::axis::{Axis, MAX_COUNT, Mapping, Positions, Variable};
 use crate::error::{Error, Result};
 use crate::models::{Component, MODELS};
-use crate::plan::MAX_GRID;
+use crate::plan::{MAX_GAUSS, MAX_GRID, MAX_SAMPLES, Rule};
 use crate::quantity::QUANTITIES;
 use document::{Document, Fields, Item};
 use std::collections::HashSet;
@@ -132,6 +132,7 @@ fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
         "alpha",
         "axes",
         "grid",
+        "rule",
         "tolerance",
     ])?;
     let name = fields.get("name").map(table_name).transpose()?;
@@ -156,7 +157,7 @@ fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
         quantity: quantity.name.into(),
         subject,
         axes,
-        grid: fields.get("grid").map(grid).transpose()?,
+        rule: rule(&fields)?,
         tolerance: fields.get("tolerance").map(|t| t.number_in(TOLERANCES)).transpose()?,
         place: item.place(),
     })
@@ -240,10 +241,38 @@ fn check_names(tables: &[TableRequest]) -> Result<()> {
     Ok(())
 }
 
-/// `grid = [n_theta, n_phi]`
-fn grid(item: Item) -> Result<[usize; 2]> {
-    let [theta, phi] = pair(item)?;
-    Ok([theta.count(MAX_GRID)?, phi.count(MAX_GRID)?])
+/// `rule = "warped"`, or `rule = { NAME = [n_theta, n_phi] }`, or `rule = { NAME = samples }`; also
+/// `grid = [n_theta, n_phi]`.
+fn rule(fields: &Fields) -> Result<Option<Rule>> {
+    let nodes = |item: Item, most| -> Result<[usize; 2]> {
+        let [theta, phi] = pair(item)?;
+        Ok([theta.count(most)?, phi.count(most)?])
+    };
+    let grid = |item| nodes(item, MAX_GRID).map(|[theta, phi]| Some(Rule::Grid { theta, phi }));
+    let item = match (fields.get("grid"), fields.get("rule")) {
+        (None, None) => return Ok(None),
+        (Some(item), None) => return grid(item),
+        (Some(_), Some(item)) => return Err(item.refuse("grid is given too; keep one of them")),
+        (None, Some(item)) => item,
+    };
+    if !item.is_table() {
+        return item.one_of([("warped", Some(Rule::Warped))]);
+    }
+    let entries = item.entries()?;
+    let [entry] = entries[..] else { return Err(item.refuse("give one rule: { NAME = … }")) };
+    let names = ["grid", "gauss", "hammersley", "vndf", "random"];
+    Ok(match entry.key_one_of(names.map(|name| (name, name)))? {
+        "grid" => grid(entry)?,
+        "gauss" => nodes(entry, MAX_GAUSS).map(|[theta, phi]| Some(Rule::Gauss { theta, phi }))?,
+        name => {
+            let samples = entry.count(MAX_SAMPLES)?;
+            Some(match name {
+                "hammersley" => Rule::Hammersley { samples },
+                "vndf" => Rule::Vndf { samples },
+                _ => Rule::Random { samples },
+            })
+        }
+    })
 }
 
 /// A count, `{ count, range, positions, mapping }`, or `{ values }`.
