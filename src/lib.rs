@@ -22,6 +22,7 @@
 //! | [`mod@reference`] | the textbook's formulas in f64, adaptive quadrature | everything else |
 //! | [`check`] | a table's texels against the reference | how they were computed |
 //! | [`bake`] | the order of it all: evaluate, look, check, write | how any of it is done |
+//! | [`storage`], `interpolation`, `optimise` | what rounding and bilinear look-ups cost, and the least bytes for a tolerance | devices, files |
 //! | [`table`], [`axis`], [`quantity`] | what a table is | where it came from |
 //! | `files` | EXR, NPY, PNG, the manifest; sets written all or nothing | physics |
 //!
@@ -71,7 +72,9 @@ pub mod error;
 #[cfg(feature = "files")]
 pub mod files;
 pub mod gpu;
+mod interpolation;
 pub mod models;
+mod optimise;
 pub mod pair;
 pub mod plan;
 pub mod quadrature;
@@ -79,8 +82,11 @@ pub mod quantity;
 pub mod reference;
 pub mod scene;
 mod slopes;
+pub mod storage;
 pub mod table;
 mod work;
 
 pub use error::{Error, Result};
+pub use interpolation::InterpolationError;
+pub use optimise::{Choice, Layout};
 pub use wgpu;

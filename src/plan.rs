@@ -8,7 +8,9 @@ pub use requirements::{Basis, MaterialPlan, Plan, Selection};
 use crate::axis::{Axis, Variable};
 use crate::error::{Error, Result};
 use crate::models::{ALPHA_MIN_VALUE, Model};
+use crate::optimise::Choice;
 use crate::quantity::{Evaluation, Quantity};
+use crate::storage::Storage;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -29,8 +31,12 @@ pub struct TablePlan {
     pub lobes: Vec<Lobe>,
     /// The rule of its integrals.
     pub rule: Rule,
-    /// The error it must not exceed: absolute for integrals, relative for values.
+    /// The error it must not exceed, as stored: absolute for integrals, relative for values.
     pub tolerance: f64,
+    /// The format that its values are rounded to.
+    pub storage: Storage,
+    /// What the optimiser chose: the tolerance then holds for bilinear look-ups.
+    pub bilinear: Option<Choice>,
 }
 
 /// A lobe of a table.
@@ -86,6 +92,8 @@ impl TablePlan {
             lobes: vec![Lobe { model, roughness, weights: unit[..model.components.len()].to_vec() }],
             rule: Rule::Warped,
             tolerance: DEFAULT_TOLERANCE,
+            storage: Storage::F32,
+            bilinear: None,
         };
         plan.checked()
     }
@@ -98,6 +106,17 @@ impl TablePlan {
     /// The same table with another tolerance.
     pub fn with_tolerance(self, tolerance: f64) -> Self {
         Self { tolerance, ..self }
+    }
+
+    /// The same table in another format.
+    pub fn with_storage(self, storage: Storage) -> Self {
+        Self { storage, ..self }
+    }
+
+    /// What the rule may be off by: a tenth of the tolerance where rounding and look-ups take the rest.
+    pub(crate) fn rule_tolerance(&self) -> f64 {
+        let shared = self.bilinear.is_some() || self.storage.bytes() < Storage::F32.bytes();
+        if shared { 0.1 * self.tolerance } else { self.tolerance }
     }
 
     /// The plan, if it can be carried out: axes that fit the quantity and the lobes, α in range.
@@ -247,6 +266,13 @@ impl fmt::Display for TablePlan {
         if self.quantity.evaluation != Evaluation::Value {
             write!(f, ", {}", self.rule)?;
         }
-        write!(f, ", to {:e}", self.tolerance)
+        if self.storage != Storage::F32 {
+            write!(f, ", stored as {}", self.storage.name())?;
+        }
+        write!(f, ", to {:e}", self.tolerance)?;
+        match &self.bilinear {
+            Some(choice) => write!(f, " bilinearly: {choice}"),
+            None => Ok(()),
+        }
     }
 }

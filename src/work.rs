@@ -110,7 +110,7 @@ fn integrals(table: &TablePlan, lobe: &Lobe, thetas: &[f64], weights: &[f64]) ->
         }
         (Rule::Warped, Integral::Slopes(slopes)) => {
             let mus = thetas.iter().map(|theta| theta.cos().max(MU_MIN)).collect();
-            let work = SlopeWork::new(slopes, mus, &table.alphas(lobe), table.tolerance);
+            let work = SlopeWork::new(slopes, mus, &table.alphas(lobe), table.rule_tolerance());
             WorkKind::Integrals { inner: Inner::Slopes(work), outer: weights.to_vec() }
         }
         (Rule::Warped, Integral::Delta(directional)) => WorkKind::Integrals {

@@ -10,8 +10,10 @@ use crate::check::{Check, cross_check};
 use crate::cpu;
 use crate::error::{Error, Result};
 use crate::gpu::{Device, DeviceChoice};
+use crate::interpolation;
 use crate::plan::{Rule, TablePlan};
 use crate::quantity::Evaluation;
+use crate::storage::{Storage, Stored};
 use crate::table::{Table, Values};
 use serde::Serialize;
 use std::time::Instant;
@@ -117,15 +119,20 @@ impl Evaluator {
                 let start = Instant::now();
                 let values = cpu::evaluate(plan, &tick)?;
                 stages.dispatch += start.elapsed().as_secs_f64();
-                // Tables are stored in f32, however they are computed.
-                Values::F32(values.into_iter().map(|x| x as f32).collect())
+                Values::F64(values)
             }
         };
         let seconds = stages.dispatch + stages.readback - before;
 
         observer.begin(&format!("checking {}", plan.name));
         let start = Instant::now();
-        let error = cross_check(plan, &values, check, self.estimate(plan), &tick)?;
+        let Stored { values, underflows } = plan
+            .storage
+            .store(values, plan.quantity.error)
+            .map_err(|why| Error::Promise(format!("table {}: {why}", plan.name)))?;
+        let mut error = cross_check(plan, &values, check, self.estimate(plan), &tick)?;
+        error.underflows = (plan.storage == Storage::F16).then_some(underflows);
+        error.interpolation = interpolation::measure(plan, &values, check)?;
         stages.check += start.elapsed().as_secs_f64();
         let table = Table {
             name: plan.name.clone(),
@@ -141,6 +148,8 @@ impl Evaluator {
             } else {
                 plan.rule.to_string()
             },
+            storage: plan.storage,
+            bilinear: plan.bilinear.clone(),
             precision: self.precision().into(),
             error,
             seconds,
@@ -153,10 +162,13 @@ impl Evaluator {
     /// What a rule promises before anything is measured, over all parameters; the tests of
     /// convergence and of the extremes hold it. The grid rule promises nothing.
     fn estimate(&self, plan: &TablePlan) -> Option<f64> {
+        // Rounding to f32 is part of either figure.
+        let coarse = plan.storage.bytes() < Storage::F32.bytes();
+        let rounding = if coarse { plan.storage.rounding(plan.quantity.error) } else { 0.0 };
         if plan.quantity.evaluation == Evaluation::Value {
-            return Some(if matches!(self, Self::Cpu) { STORED_F32 } else { VALUE_F32 });
+            return Some(if matches!(self, Self::Cpu) { STORED_F32 } else { VALUE_F32 } + rounding);
         }
-        (plan.rule == Rule::Warped).then_some(WARPED)
+        (plan.rule == Rule::Warped).then_some(WARPED + rounding)
     }
 }
 
@@ -165,10 +177,21 @@ impl Evaluator {
 /// # Errors
 /// [`Error::Promise`] with the worst texel.
 pub fn within_tolerance(plan: &TablePlan, table: &Table) -> Result<()> {
+    if plan.bilinear.is_some()
+        && let Some(between) = &table.error.interpolation
+        && let Some(max) = between.max.filter(|&max| max > plan.tolerance)
+    {
+        return Err(Error::Promise(format!(
+            "table {}: bilinear look-ups are off by {max:.2e} where {:.0e} is allowed ({:?}); allow more, or \
+             give counts in place of auto",
+            plan.name, plan.tolerance, between.worst
+        )));
+    }
     let Some(measured) = table.error.measured_max.filter(|&max| max > plan.tolerance) else { return Ok(()) };
     let place: Vec<_> = table.error.worst.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let remedy = match plan.rule {
         Rule::Grid { .. } => "take a finer grid or the warped rule",
+        Rule::Warped if table.storage.bytes() < Storage::F32.bytes() => "allow more, or store it as f32",
         // No table is better than the f32 that it is stored in.
         Rule::Warped if table.precision == "f32" && plan.tolerance > STORED_F32 => {
             "allow more, or bake with --device cpu, which is f64"
