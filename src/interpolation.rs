@@ -78,7 +78,7 @@ pub(crate) fn measure(plan: &TablePlan, values: &Values, check: Check) -> Result
     let checked: Vec<_> = places
         .par_iter()
         .map(|at| {
-            let point = fine(plan, at.iter().map(|&x| vec![x]).collect());
+            let point = fine(plan, at.iter().map(|&x| vec![x]).collect(), FINE);
             let fast = evaluate(&point);
             let truth = check::reference(&point, 0);
             let read = look_up(&plan.axes, values, channels, at);
@@ -170,7 +170,7 @@ pub(crate) fn look_up(axes: &[Axis], values: &Values, channels: usize, at: &[f64
 }
 
 /// The same table in f64 by the fast path, over listed coordinates.
-pub(crate) fn fine(plan: &TablePlan, coordinates: Vec<Vec<f64>>) -> TablePlan {
+pub(crate) fn fine(plan: &TablePlan, coordinates: Vec<Vec<f64>>, tolerance: f64) -> TablePlan {
     let axes = plan.axes.iter().zip(coordinates).map(|(axis, values)| Axis {
         positions: Positions::Values,
         mapping: Mapping::Linear,
@@ -180,7 +180,7 @@ pub(crate) fn fine(plan: &TablePlan, coordinates: Vec<Vec<f64>>) -> TablePlan {
     TablePlan {
         axes: axes.collect(),
         rule: Rule::Warped,
-        tolerance: FINE,
+        tolerance,
         storage: Storage::F32,
         bilinear: None,
         ..plan.clone()
@@ -205,7 +205,7 @@ struct Dense {
 impl Dense {
     fn new(plan: &TablePlan, values: &Values, coordinates: Vec<Vec<f64>>) -> Self {
         let channels = plan.channels.len();
-        let truth = evaluate(&fine(plan, coordinates.clone()));
+        let truth = evaluate(&fine(plan, coordinates.clone(), FINE));
         let mut dense = Self { coordinates, errors: vec![], squares: vec![], channels };
         for (texel, truth) in truth.chunks(channels).enumerate() {
             let read = look_up(&plan.axes, values, channels, &dense.at(texel));

@@ -9,7 +9,7 @@
 use crate::axis::{Axis, Mapping, Positions, Variable};
 use crate::error::{Error, Result};
 use crate::interpolation::{evaluate, fine, largest, locate, look_up, promised};
-use crate::plan::TablePlan;
+use crate::plan::{TablePlan, UNORM_RULE};
 use crate::storage::Storage;
 use crate::table::{ErrorKind, Values, indices};
 use serde::Serialize;
@@ -69,13 +69,18 @@ pub(crate) fn optimise(table: TablePlan, auto: &[Variable], storage: Option<Stor
 /// The longest axis that is tried.
 const MOST: usize = 512;
 /// The pairs of options that are searched for real.
-const SHORTLIST: usize = 4;
+const SHORTLIST: usize = 3;
 /// Points along each axis at which candidates are tested.
-const TESTS: usize = 97;
+const TESTS: usize = 65;
 /// Sizes at which the errors of single axes are tabulated.
 const SIZES: [usize; 3] = [24, 64, 160];
 /// What the search leaves for what lies between its test points.
 const MARGIN: f64 = 0.98;
+
+/// The tolerance of the search's own integrals.
+fn rough(table: &TablePlan) -> f64 {
+    (0.01 * table.tolerance).min(UNORM_RULE)
+}
 
 /// An axis but for its size.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -157,15 +162,16 @@ impl<'a> Search<'a> {
                 if a < b { tests(TESTS).collect() } else { vec![b] }
             })
             .collect();
-        let truth = evaluate(&fine(table, tests.clone()));
-        // Two bytes before four. Of equal bytes the finer; halves, which every device filters, where the
-        // values or the user say so.
+        let truth = evaluate(&fine(table, tests.clone(), rough(table)));
+        // Two bytes before four; of two, unorm16, which is finer than halves where it fits. Four can only
+        // help where the rounding of two is felt.
+        let fits = |&value: &f64| (0.0..=1.0).contains(&Storage::Unorm16.round(value));
+        let narrow = if truth.iter().all(fits) { Storage::Unorm16 } else { Storage::F16 };
+        let felt = narrow.rounding(ErrorKind::Absolute) > 0.05 * table.tolerance;
         let storages = match storage {
             Some(storage) => vec![storage],
-            None if truth.iter().all(|value| (0.0..=1.0).contains(value)) => {
-                vec![Storage::Unorm16, Storage::F16, Storage::F32]
-            }
-            None => vec![Storage::F16, Storage::F32],
+            None if felt => vec![narrow, Storage::F32],
+            None => vec![narrow],
         };
         let search = Self { table, auto, storages, tests, truth, curves: RefCell::default() };
         let curves = search.auto.iter().map(|&k| search.curves_of(k)).collect();
@@ -207,7 +213,7 @@ impl<'a> Search<'a> {
         }
         let shape: Vec<_> = coordinates.iter().map(Vec::len).collect();
         let channels = self.table.channels.len();
-        let values = evaluate(&fine(self.table, coordinates));
+        let values = evaluate(&fine(self.table, coordinates, rough(self.table)));
         let all: Vec<_> = self.tests.iter().map(Vec::len).collect();
         let mut largest = 0.0;
         for (texel, truth) in self.truth.chunks(channels).enumerate() {
@@ -269,12 +275,12 @@ impl<'a> Search<'a> {
                 return None;
             }
             let found = match curves {
-                [only] => self.shortest(storage, &[], only.option, 2 * texels),
+                [only] => self.shortest(storage, &[], only.option, texels),
                 [a, b] => {
-                    let sizes = (0..=8).map(|k| (first as f64 * (0.6 + 0.1 * f64::from(k))) as usize);
+                    let sizes = (0..=4).map(|k| (first as f64 * (0.8 + 0.1 * f64::from(k))) as usize);
                     let found = sizes.filter_map(|n| {
                         let axis = a.option.axis(n.clamp(2, MOST))?;
-                        self.shortest(storage, &[axis], b.option, 2 * texels / n.max(1) + 2)
+                        self.shortest(storage, &[axis], b.option, texels / n.max(1) + 2)
                     });
                     found.min_by_key(|found| found.bytes)
                 }
@@ -284,8 +290,8 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// The shortest last axis with which the table meets the tolerance.
-    fn shortest(&self, storage: Storage, first: &[Axis], last: AxisOption, most: usize) -> Option<Found> {
+    /// The shortest last axis, about as long as the bound has it, with which the table meets the tolerance.
+    fn shortest(&self, storage: Storage, first: &[Axis], last: AxisOption, bound: usize) -> Option<Found> {
         let found = |n: usize| {
             let mut axes = self.table.axes.clone();
             let chosen = first.iter().cloned().chain(last.axis(n));
@@ -293,8 +299,14 @@ impl<'a> Search<'a> {
             self.found(axes, storage)
         };
         let room = MARGIN * self.table.tolerance;
-        let (mut low, mut high) = (1, most.min(MOST));
-        let mut best = found(high).filter(|found| found.error <= room)?;
+        let (mut low, mut high) = ((bound / 2).max(1), (bound * 5 / 4 + 2).min(MOST));
+        let mut best = loop {
+            match found(high).filter(|found| found.error <= room) {
+                Some(found) => break found,
+                None if high >= (2 * bound).min(MOST) => return None,
+                None => (low, high) = (high, (high * 5 / 4).min(MOST)),
+            }
+        };
         while high - low > 1 {
             let middle = (low + high) / 2;
             match found(middle).filter(|found| found.error <= room) {
@@ -307,7 +319,8 @@ impl<'a> Search<'a> {
 
     /// A table with these axes, its error at the test points; `None` where its values do not fit.
     fn found(&self, axes: Vec<Axis>, storage: Storage) -> Option<Found> {
-        let plan = fine(self.table, axes.iter().map(|axis| axis.values.clone()).collect());
+        let nodes = axes.iter().map(|axis| axis.values.clone()).collect();
+        let plan = fine(self.table, nodes, rough(self.table));
         let channels = self.table.channels.len();
         let values = Values::F64(evaluate(&plan));
         let values = storage.store(values, ErrorKind::Absolute).ok()?.values;
@@ -327,7 +340,8 @@ impl<'a> Search<'a> {
         const TRIES: usize = 6;
         for _ in 0..TRIES {
             let plan = TablePlan { axes: found.axes.clone(), ..self.table.clone() };
-            let nodes = fine(&plan, found.axes.iter().map(|axis| axis.values.clone()).collect());
+            let nodes = found.axes.iter().map(|axis| axis.values.clone()).collect();
+            let nodes = fine(&plan, nodes, rough(&plan));
             let values = found.storage.store(Values::F64(evaluate(&nodes)), ErrorKind::Absolute).ok()?.values;
             found.error = largest(&plan, &values);
             if found.error <= CONFIRMED * self.table.tolerance {
@@ -346,7 +360,7 @@ impl<'a> Search<'a> {
 }
 
 /// Of the test points along the other axis, those that rank options.
-const COARSE: usize = 4;
+const COARSE: usize = 8;
 /// The device's own error, a tenth of the tolerance at most by the rule but 1e-6 in truth, has its room.
 const CONFIRMED: f64 = 0.995;
 

@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::models::{ALPHA_MIN_VALUE, Model};
 use crate::optimise::Choice;
 use crate::quantity::{Evaluation, Quantity};
-use crate::storage::Storage;
+use crate::storage::{Storage, UNORM};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -115,8 +115,12 @@ impl TablePlan {
 
     /// What the rule may be off by: a tenth of the tolerance where rounding and look-ups take the rest.
     pub(crate) fn rule_tolerance(&self) -> f64 {
-        let shared = self.bilinear.is_some() || self.storage.bytes() < Storage::F32.bytes();
-        if shared { 0.1 * self.tolerance } else { self.tolerance }
+        match self.storage {
+            Storage::Unorm16 => (0.1 * self.tolerance).min(UNORM_RULE),
+            Storage::F16 => 0.1 * self.tolerance,
+            _ if self.bilinear.is_some() => 0.1 * self.tolerance,
+            _ => self.tolerance,
+        }
     }
 
     /// The plan, if it can be carried out: axes that fit the quantity and the lobes, α in range.
@@ -240,6 +244,9 @@ impl TablePlan {
             .collect()
     }
 }
+
+/// A quarter of unorm16's step: the rule may then not lift a 1 beyond what rounds to 1.
+pub(crate) const UNORM_RULE: f64 = 0.25 / UNORM;
 
 /// The tolerance where nobody names one.
 pub const DEFAULT_TOLERANCE: f64 = 1e-4;
