@@ -60,6 +60,8 @@ pub fn cross_check(
         measured_max: None,
         measured_rms: None,
         texels_checked: 0,
+        underflows: None,
+        interpolation: None,
         worst: BTreeMap::new(),
     };
     let known = table.lobes.iter().all(|lobe| lobe.model.reference.is_some());
@@ -136,7 +138,7 @@ fn reference_lobe(evaluation: Evaluation, lobe: &Lobe, at: &BTreeMap<Variable, f
 
 /// At least `n` different texels: every corner of the axes, where extremes meet, and steps of the
 /// golden section through the rest.
-fn sample(shape: &[usize], n: usize) -> Vec<usize> {
+pub(crate) fn sample(shape: &[usize], n: usize) -> Vec<usize> {
     let texels: usize = shape.iter().product();
     if n == 0 {
         return Vec::new();

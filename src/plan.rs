@@ -8,8 +8,10 @@ pub use requirements::{Basis, MaterialPlan, Plan, Selection};
 use crate::axis::{Axis, Variable};
 use crate::error::{Error, Result};
 use crate::models::{ALPHA_MIN_VALUE, Integral, Model};
+use crate::optimise::Choice;
 use crate::quantity::{Evaluation, Quantity};
 use crate::sampling::CHUNK;
+use crate::storage::{Storage, UNORM};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -30,8 +32,12 @@ pub struct TablePlan {
     pub lobes: Vec<Lobe>,
     /// The rule of its integrals.
     pub rule: Rule,
-    /// The error it must not exceed: absolute for integrals, relative for values.
+    /// The error it must not exceed, as stored: absolute for integrals, relative for values.
     pub tolerance: f64,
+    /// The format that its values are rounded to.
+    pub storage: Storage,
+    /// What the optimiser chose: the tolerance then holds for bilinear look-ups.
+    pub bilinear: Option<Choice>,
 }
 
 /// A lobe of a table.
@@ -171,6 +177,8 @@ impl TablePlan {
             lobes: vec![Lobe { model, roughness, weights: unit[..model.components.len()].to_vec() }],
             rule: Rule::Warped,
             tolerance: DEFAULT_TOLERANCE,
+            storage: Storage::F32,
+            bilinear: None,
         };
         plan.checked()
     }
@@ -183,6 +191,21 @@ impl TablePlan {
     /// The same table with another tolerance.
     pub fn with_tolerance(self, tolerance: f64) -> Self {
         Self { tolerance, ..self }
+    }
+
+    /// The same table in another format.
+    pub fn with_storage(self, storage: Storage) -> Self {
+        Self { storage, ..self }
+    }
+
+    /// What the rule may be off by: a tenth of the tolerance where rounding and look-ups take the rest.
+    pub(crate) fn rule_tolerance(&self) -> f64 {
+        match self.storage {
+            Storage::Unorm16 => (0.1 * self.tolerance).min(UNORM_RULE),
+            Storage::F16 => 0.1 * self.tolerance,
+            _ if self.bilinear.is_some() => 0.1 * self.tolerance,
+            _ => self.tolerance,
+        }
     }
 
     /// The plan, if it can be carried out: axes that fit the quantity and the lobes, α in range.
@@ -306,6 +329,14 @@ impl TablePlan {
         if self.tolerance < floor { Precision::F64 } else { Precision::F32 }
     }
 
+    /// The format that values are stored in: f64 where f32 is asked for and cannot meet the tolerance.
+    pub fn stored(&self) -> Storage {
+        match (self.storage, self.precision()) {
+            (Storage::F32, Precision::F64) => Storage::F64,
+            (storage, _) => storage,
+        }
+    }
+
     /// Samples along each axis, slowest first.
     pub fn shape(&self) -> Vec<usize> {
         self.axes.iter().map(Axis::len).collect()
@@ -360,6 +391,9 @@ pub const INTEGRAL_F32: f64 = 1e-6;
 /// The relative error of f64 values stored as f32.
 pub const STORED_F32: f64 = 1.0 / (1 << 24) as f64;
 
+/// A quarter of unorm16's step: the rule may then not lift a 1 beyond what rounds to 1.
+pub(crate) const UNORM_RULE: f64 = 0.25 / UNORM;
+
 /// The tolerance where nobody names one.
 pub const DEFAULT_TOLERANCE: f64 = 1e-4;
 
@@ -390,6 +424,13 @@ impl fmt::Display for TablePlan {
         if self.quantity.evaluation != Evaluation::Value {
             write!(f, ", {}", self.rule)?;
         }
-        write!(f, ", to {:e}", self.tolerance)
+        if self.storage != Storage::F32 {
+            write!(f, ", stored as {}", self.storage.name())?;
+        }
+        write!(f, ", to {:e}", self.tolerance)?;
+        match &self.bilinear {
+            Some(choice) => write!(f, " bilinearly: {choice}"),
+            None => Ok(()),
+        }
     }
 }

@@ -2,6 +2,9 @@
 
 use crate::axis::Axis;
 use crate::error::{Error, Result};
+use crate::interpolation::InterpolationError;
+use crate::optimise::Choice;
+use crate::storage::Storage;
 use serde::Serialize;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -27,6 +30,10 @@ pub struct Table {
     pub values: Values,
     /// How it was computed, in words: "warped 32 v × 2·24 φ".
     pub rule: String,
+    /// The format that the values were rounded to.
+    pub storage: Storage,
+    /// What the storage optimiser chose, where it did.
+    pub bilinear: Option<Choice>,
     /// The arithmetic: `f32` or `f64`.
     pub precision: String,
     /// How far the values are from the truth.
@@ -61,6 +68,11 @@ pub struct TableError {
     pub measured_rms: Option<f64>,
     /// How many texels were compared.
     pub texels_checked: usize,
+    /// Values below the normal range of half floats, where they lose relative precision.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub underflows: Option<usize>,
+    /// What look-ups between the samples cost; `None` where that was not measured.
+    pub interpolation: Option<InterpolationError>,
     /// Where the largest difference lies, axis by axis, with both values.
     pub worst: BTreeMap<String, f64>,
 }

@@ -52,7 +52,7 @@ impl Work {
             Evaluation::Directional => integrals(table, lobe, &directions(table), &[1.0]),
             Evaluation::Hemispherical => {
                 // ρ_hh = ∫ ρ 2μ dμ with μ = u²: ρ turns at μ ≈ α, where u has nodes to spare.
-                let nodes = gauss_legendre(MEAN_NODES[decade(table.tolerance)]);
+                let nodes = gauss_legendre(MEAN_NODES[decade(table.rule_tolerance())]);
                 let thetas: Vec<_> = nodes.iter().map(|node| (node.x * node.x).acos()).collect();
                 let weights: Vec<_> = nodes.iter().map(|n| 4.0 * n.x.powi(3) * n.weight).collect();
                 integrals(table, lobe, &thetas, &weights)
@@ -146,11 +146,11 @@ fn integrals(table: &TablePlan, lobe: &Lobe, thetas: &[f64], weights: &[f64]) ->
         (Rule::Grid { theta, phi }, _) => smooth(grid_cells(theta), grid_azimuths(phi)),
         // The plan refuses the sampling rules for lobes without microfacets.
         (_, Integral::Smooth(nodes)) => {
-            let [theta, phi] = nodes(table.tolerance);
+            let [theta, phi] = nodes(table.rule_tolerance());
             smooth(gauss_cells(theta), gauss_azimuths(2 * phi))
         }
         (Rule::Warped, Integral::Slopes(slopes)) => {
-            let work = SlopeWork::new(slopes, mus(), &table.alphas(lobe), table.tolerance);
+            let work = SlopeWork::new(slopes, mus(), &table.alphas(lobe), table.rule_tolerance());
             WorkKind::Integrals { inner: Inner::Slopes(work), outer: weights.to_vec() }
         }
         (_, Integral::Delta(directional)) => WorkKind::Integrals {

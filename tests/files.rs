@@ -7,6 +7,7 @@ mod readers;
 
 use gonio::axis::{Axis, Mapping, Positions, Variable};
 use gonio::files::{Format, Provenance, TableEntry, TableSet, read_manifest, verify};
+use gonio::storage::Storage;
 use gonio::table::{ErrorKind, Table, TableError, indices};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -425,6 +426,8 @@ fn table(name: &str, axes: Vec<Axis>, channels: &[&str], f: impl Fn(&[f64]) -> f
         channels: channels.iter().map(|&channel| channel.into()).collect(),
         values: values.into(),
         rule: "warped 32 v × 2·24 φ".into(),
+        storage: Storage::F32,
+        bilinear: None,
         precision: "f32".into(),
         error: TableError {
             kind: ErrorKind::Relative,
@@ -433,6 +436,8 @@ fn table(name: &str, axes: Vec<Axis>, channels: &[&str], f: impl Fn(&[f64]) -> f
             measured_max: Some(3e-7),
             measured_rms: Some(1e-7),
             texels_checked: 256,
+            underflows: None,
+            interpolation: None,
             worst: BTreeMap::from([("theta_i".into(), 0.25)]),
         },
         seconds: 0.25,

@@ -10,8 +10,10 @@ use crate::check::{Check, cross_check};
 use crate::cpu;
 use crate::error::{Error, Result};
 use crate::gpu::{Device, DeviceChoice};
+use crate::interpolation;
 use crate::plan::{Precision, Rule, STORED_F32, TablePlan, VALUE_F32};
 use crate::quantity::Evaluation;
+use crate::storage::{Storage, Stored};
 use crate::table::{Table, Values};
 use serde::Serialize;
 use std::time::Instant;
@@ -106,7 +108,14 @@ impl Evaluator {
 
         observer.begin(&format!("checking {}", plan.name));
         let start = Instant::now();
-        let error = cross_check(plan, &values, check, estimate, &tick)?;
+        let Stored { values, underflows } = plan
+            .stored()
+            .store(values, plan.quantity.error)
+            .map_err(|why| Error::Promise(format!("table {}: {why}", plan.name)))?;
+        let rounding = plan.stored().coarse_rounding(plan.quantity.error);
+        let mut error = cross_check(plan, &values, check, estimate.map(|e| e + rounding), &tick)?;
+        error.underflows = (plan.storage == Storage::F16).then_some(underflows);
+        error.interpolation = interpolation::measure(plan, &values, check)?;
         stages.check += start.elapsed().as_secs_f64();
         let table = Table {
             name: plan.name.clone(),
@@ -118,6 +127,8 @@ impl Evaluator {
             channels: plan.channels.clone(),
             values,
             rule: path.rule(plan, self),
+            storage: plan.stored(),
+            bilinear: plan.bilinear.clone(),
             precision: path.name().into(),
             error,
             seconds,
@@ -146,7 +157,7 @@ impl Evaluator {
 #[derive(Clone, Copy)]
 enum Path<'a> {
     Device(&'a Device, Precision),
-    /// Always computed in f64; rounded to f32 where that is asked for.
+    /// Always f64; the precision is what was asked for.
     Cpu(Precision),
 }
 
@@ -159,14 +170,11 @@ impl Path<'_> {
     ) -> Result<Values> {
         match self {
             Self::Device(device, precision) => device.evaluate(plan, precision, stages, tick),
-            Self::Cpu(precision) => {
+            Self::Cpu(_) => {
                 let start = Instant::now();
                 let values = cpu::evaluate(plan, tick)?;
                 stages.dispatch += start.elapsed().as_secs_f64();
-                Ok(match precision {
-                    Precision::F32 => Values::F32(values.into_iter().map(|x| x as f32).collect()),
-                    Precision::F64 => Values::F64(values),
-                })
+                Ok(Values::F64(values))
             }
         }
     }
@@ -241,6 +249,16 @@ impl Path<'_> {
 /// # Errors
 /// [`Error::Promise`] with the worst texel.
 pub fn within_tolerance(plan: &TablePlan, table: &Table) -> Result<()> {
+    if plan.bilinear.is_some()
+        && let Some(between) = &table.error.interpolation
+        && let Some(max) = between.max.filter(|&max| max > plan.tolerance)
+    {
+        return Err(Error::Promise(format!(
+            "table {}: bilinear look-ups are off by {max:.2e} where {:.0e} is allowed ({:?}); allow more, or \
+             give counts in place of auto",
+            plan.name, plan.tolerance, between.worst
+        )));
+    }
     // Measured against the reference, or between two rules: whichever is worse.
     let certified = plan.rule == Rule::Warped && plan.quantity.evaluation != Evaluation::Value;
     let between = table.error.estimate.filter(|_| certified);
@@ -254,6 +272,7 @@ pub fn within_tolerance(plan: &TablePlan, table: &Table) -> Result<()> {
         Rule::Gauss { .. } | Rule::Hammersley { .. } | Rule::Vndf { .. } | Rule::Random { .. } => {
             "take more nodes or samples, or the warped rule"
         }
+        Rule::Warped if table.storage.bytes() < Storage::F32.bytes() => "allow more, or store it as f32",
         // No table is better than the f32 that it is stored in.
         Rule::Warped if table.precision == "f32" && plan.tolerance > STORED_F32 => {
             "allow more, or bake with --device cpu, which is f64"

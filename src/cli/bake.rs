@@ -123,18 +123,19 @@ pub fn run(args: &Args) -> Result<()> {
 fn summary(say: &Say, plan: &Plan, baked: &Baked) -> Result<()> {
     let width = baked.tables.iter().map(|t| t.name.chars().count()).max().unwrap_or(0);
     say.line(&format!(
-        "{HEADING}{:width$}  {:>16}  {:>9}  {:>9}  {:>7}  {:>8}{HEADING:#}",
-        "table", "texels", "max error", "rms", "checked", "time"
+        "{HEADING}{:width$}  {:>16}  {:>9}  {:>9}  {:>9}  {:>7}  {:>8}{HEADING:#}",
+        "table", "texels", "max error", "rms", "bilinear", "checked", "time"
     ))?;
     for table in &baked.tables {
         let shape: Vec<_> = table.shape().iter().map(usize::to_string).collect();
         let shape = if shape.is_empty() { "1".into() } else { shape.join("×") };
         let number = |x: Option<f64>| x.map_or("–".into(), |x| format!("{x:.1e}"));
         say.line(&format!(
-            "{:width$}  {shape:>16}  {:>9}  {:>9}  {:>7}  {:>5.0} ms",
+            "{:width$}  {shape:>16}  {:>9}  {:>9}  {:>9}  {:>7}  {:>5.0} ms",
             table.name,
             number(table.error.measured_max),
             number(table.error.measured_rms),
+            number(table.error.interpolation.as_ref().and_then(|between| between.max)),
             table.error.texels_checked,
             1e3 * table.seconds,
         ))?;
@@ -176,6 +177,8 @@ fn plan_json(plan: &Plan) -> serde_json::Value {
                 "channels": t.channels,
                 "rule": t.rule.to_string(),
                 "tolerance": t.tolerance,
+                "storage": t.storage,
+                "bilinear": t.bilinear,
             })
         })
         .collect();

@@ -31,10 +31,10 @@ pub type Provenance = BTreeMap<String, String>;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Format {
-    /// OpenEXR: 32-bit float, named channels, uncompressed scanlines; width is the last axis, height the
+    /// OpenEXR: 32-bit float (16-bit for tables in f16), named channels, uncompressed scanlines; width is the last axis, height the
     /// product of the others, row 0 the first value; axes and provenance as attributes.
     Exr,
-    /// NumPy: little-endian float32 or float64, as the table's values are, shape = axes in order, channel last.
+    /// NumPy: little-endian float32, float64, float16 or uint16 as the table is stored, shape = axes in order, channel last.
     Npy,
     /// A preview to look at, not to read values from.
     Png,

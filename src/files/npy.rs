@@ -2,7 +2,9 @@
 //! float64, C order.
 
 use crate::error::{Error, Result};
+use crate::storage::{Storage, UNORM};
 use crate::table::{Table, Values};
+use half::f16;
 use npyz::{DType, Serialize, WriteOptions, WriterBuilder};
 
 /// The bytes of the file.
@@ -14,9 +16,12 @@ fn write(table: &Table) -> std::io::Result<Vec<u8>> {
     let shape = table.axes.iter().map(|axis| axis.len()).chain([table.channels.len()]);
     let shape: Vec<u64> = shape.map(|n| n as u64).collect();
     // Little-endian on every machine, so that the same table gives the same bytes.
-    match &table.values {
-        Values::F32(values) => array("<f4", &shape, values.iter().copied()),
-        Values::F64(values) => array("<f8", &shape, values.iter().copied()),
+    match (&table.values, table.storage) {
+        (values, Storage::F16) => array("<f2", &shape, values.iter().map(|v| f16::from_f64(v))),
+        // Stored values are k/65535 to within f32: rounding gives k back.
+        (values, Storage::Unorm16) => array("<u2", &shape, values.iter().map(|v| (v * UNORM).round() as u16)),
+        (Values::F32(values), _) => array("<f4", &shape, values.iter().copied()),
+        (Values::F64(values), _) => array("<f8", &shape, values.iter().copied()),
     }
 }
 

@@ -7,7 +7,8 @@ use crate::axis::{Axis, MAX_COUNT, Mapping, Positions, Variable};
 use crate::error::{Error, Result};
 use crate::models::{Component, MODELS};
 use crate::plan::{MAX_GAUSS, MAX_GRID, MAX_SAMPLES, Rule};
-use crate::quantity::QUANTITIES;
+use crate::quantity::{Evaluation, QUANTITIES};
+use crate::storage::Storage;
 use document::{Document, Fields, Item};
 use std::collections::HashSet;
 use std::path::Path;
@@ -133,6 +134,7 @@ fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
         "axes",
         "grid",
         "rule",
+        "storage",
         "tolerance",
     ])?;
     let name = fields.get("name").map(table_name).transpose()?;
@@ -140,7 +142,7 @@ fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
     let quantity = quantity.one_of(QUANTITIES.iter().map(|q| (q.name, q)))?;
     let (subject, varies) = subject(&fields, materials)?;
 
-    let mut axes = Vec::new();
+    let (mut axes, mut auto) = (Vec::new(), Vec::new());
     if let Some(item) = fields.get("axes") {
         let variables = quantity.variables.iter().copied().chain([Variable::Roughness]);
         let variables: Vec<_> = variables.map(|v| (v.name(), v)).collect();
@@ -148,6 +150,15 @@ fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
             let variable = axis_item.key_one_of(variables.iter().copied())?;
             if variable == Variable::Roughness {
                 varies.map_err(|why| axis_item.refuse(why))?;
+            }
+            if let Some(range) = auto_range(&axis_item, variable)? {
+                if quantity.evaluation == Evaluation::Value {
+                    return Err(axis_item.refuse("only integrals have auto axes; give a count"));
+                }
+                let varying = varying_roughness(&fields, materials, variable);
+                axes.push(range_axis(&axis_item, variable, range.or(varying))?);
+                auto.push(variable);
+                continue;
             }
             axes.push(axis(axis_item, variable)?);
         }
@@ -157,6 +168,11 @@ fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
         quantity: quantity.name.into(),
         subject,
         axes,
+        auto,
+        storage: fields
+            .get("storage")
+            .map(|item| item.one_of(Storage::ALL.map(|s| (s.name(), s))))
+            .transpose()?,
         rule: rule(&fields)?,
         tolerance: fields.get("tolerance").map(|t| t.number_in(TOLERANCES)).transpose()?,
         place: item.place(),
@@ -273,6 +289,45 @@ fn rule(fields: &Fields) -> Result<Option<Rule>> {
             })
         }
     })
+}
+
+/// Whether an axis is "auto", or `{ count = "auto", range = [a, b] }`; then the range that it gives.
+fn auto_range(item: &Item<'_>, variable: Variable) -> Result<Option<Option<[f64; 2]>>> {
+    let is_auto = |item: &Item| item.text().is_ok_and(|text| text == "auto");
+    let refuse = || item.refuse("only mu and roughness can be auto; give a count");
+    let can = matches!(variable, Variable::Mu | Variable::Roughness);
+    if is_auto(item) {
+        return if can { Ok(Some(None)) } else { Err(refuse()) };
+    }
+    if !item.is_table() {
+        return Ok(None);
+    }
+    let fields = item.any_table()?;
+    if !fields.get("count").is_some_and(|count| is_auto(&count)) {
+        return Ok(None);
+    }
+    if !can {
+        return Err(refuse());
+    }
+    let fields = item.table(&["count", "range"])?;
+    let Some(range) = fields.get("range") else { return Ok(Some(None)) };
+    let [a, b] = pair(range)?;
+    Ok(Some(Some([a.number()?, b.number()?])))
+}
+
+/// The roughness that the table's material takes, where it is one that varies.
+fn varying_roughness(fields: &Fields, materials: &[Material], variable: Variable) -> Option<[f64; 2]> {
+    let name = fields.get("material").filter(|_| variable == Variable::Roughness)?.text().ok()?;
+    let material = materials.iter().find(|m| m.name == name)?;
+    let all = Distribution::union(material.lobes.iter().filter_map(|lobe| lobe.roughness.as_ref()))?;
+    Some([all.min(), all.max()])
+}
+
+/// An axis that stands for its range, until the plan chooses its samples.
+fn range_axis(item: &Item, variable: Variable, range: Option<[f64; 2]>) -> Result<Axis> {
+    let range = range.unwrap_or(variable.natural_range());
+    let axis = Axis::new(variable, 2, range, Positions::Nodes, Mapping::Linear);
+    axis.map_err(|error| error.at(item.place()))
 }
 
 /// A count, `{ count, range, positions, mapping }`, or `{ values }`.
