@@ -63,7 +63,7 @@ fn the_manifest_has_the_documented_keys_and_no_others() {
     assert_eq!(keys(&manifest["device"]), ["driver", "kind", "name"]);
     assert_eq!(
         keys(&manifest["stages"]),
-        ["check", "certify", "compile", "compose", "device", "dispatch", "readback", "scene", "write"]
+        ["certify", "check", "compile", "compose", "device", "dispatch", "readback", "scene", "write"]
     );
 
     let requirements = &manifest["requirements"];
