@@ -7,13 +7,13 @@ use crate::error::{Error, Result};
 use crate::plan::TablePlan;
 use std::time::Instant;
 
-/// A table, and the time that it took.
-pub(crate) struct Timing {
+/// A table that is ready to be baked again and again: pipelines are compiled and buffers touched.
+pub(crate) struct Warm<'a> {
+    device: &'a Device,
+    layout: Layout,
+    tiles: Vec<Tile>,
     /// Seconds of the host before the device has anything to do: nodes, factors, upload.
     pub prepare: f64,
-    /// Seconds of the device, run by run.
-    pub runs: Vec<f64>,
-    pub values: Vec<f32>,
 }
 
 /// What the device can do at most.
@@ -25,10 +25,28 @@ pub(crate) struct Rates {
     pub operations: f64,
 }
 
+impl Warm<'_> {
+    /// Bakes once, and returns the seconds from the first submission to the end of the last.
+    pub fn run(&self) -> Result<f64> {
+        let steps: Vec<_> = self.tiles.iter().flat_map(|tile| &tile.steps).collect();
+        let start = Instant::now();
+        self.device.submit_all(&steps)?;
+        Ok(start.elapsed().as_secs_f64())
+    }
+
+    /// The values of the last run.
+    pub fn values(&self) -> Result<Vec<f32>> {
+        let mut values = Vec::new();
+        for tile in &self.tiles {
+            self.device.read_back(tile, &self.layout, &mut values)?;
+        }
+        Ok(values)
+    }
+}
+
 impl Device {
-    /// Bakes a table again and again, warm: pipelines are compiled and buffers touched before the first
-    /// run that counts. `more` is asked before each run, and stops everything by an error.
-    pub(crate) fn time(&self, table: &TablePlan, more: &dyn Fn(&[f64]) -> Result<bool>) -> Result<Timing> {
+    /// Makes a table ready, and bakes it once.
+    pub(crate) fn warm(&self, table: &TablePlan) -> Result<Warm<'_>> {
         let prepare = || -> Result<(Layout, Vec<Tile>)> {
             let layout = Layout::new(table);
             let stages = self.baker.stages(table)?;
@@ -39,20 +57,9 @@ impl Device {
         drop(prepare()?); // compiles
         let start = Instant::now();
         let (layout, tiles) = prepare()?;
-        let prepare = start.elapsed().as_secs_f64();
-        let steps: Vec<_> = tiles.iter().flat_map(|tile| &tile.steps).collect();
-        self.submit_all(&steps)?;
-        let mut runs = Vec::new();
-        while more(&runs)? {
-            let start = Instant::now();
-            self.submit_all(&steps)?;
-            runs.push(start.elapsed().as_secs_f64());
-        }
-        let mut values = Vec::with_capacity(table.texels() * layout.channels);
-        for tile in &tiles {
-            self.read_back(tile, &layout, &mut values)?;
-        }
-        Ok(Timing { prepare, runs, values })
+        let warm = Warm { device: self, layout, tiles, prepare: start.elapsed().as_secs_f64() };
+        warm.run()?;
+        Ok(warm)
     }
 
     /// As few submissions as the limit on a dispatch allows.
