@@ -46,6 +46,8 @@ pub(super) fn candidates(
                 whole,
                 evaluations,
             };
+            // f over (θ, φ) takes several times as long as a sample.
+            let most = if matches!(rule, Rule::Grid { .. } | Rule::Gauss { .. }) { most / 4.0 } else { most };
             match (of(table), of(subset)) {
                 (Ok(all), _) if all.1 as f64 <= most => found.push(take(all, true)),
                 (_, Ok(part)) if part.1 as f64 <= most => found.push(take(part, false)),

@@ -160,7 +160,7 @@ pub fn measure(
         point.on_front = on_front;
     }
     let mut trade = Trade {
-        table: table.to_string(),
+        table: in_words(table),
         shape: table.shape(),
         subset_texels: subset.texels.len(),
         subset: subset.to_string(),
@@ -173,6 +173,13 @@ pub fn measure(
     let headlines = pairs.map(|pair| headline(evaluator, table, pair, observer)).collect::<Result<_>>()?;
     trade.headlines = headlines;
     Ok(trade)
+}
+
+/// What is measured; not by which rule.
+fn in_words(table: &TablePlan) -> String {
+    let axes: Vec<_> = table.axes.iter().map(|a| format!("{} {}", a.variable.name(), a.len())).collect();
+    let over = if axes.is_empty() { String::new() } else { format!(" over {}", axes.join(" × ")) };
+    format!("{} of {}{over}", table.quantity.name, table.subject)
 }
 
 /// The reference's channels, by texel of the whole table.
@@ -269,8 +276,7 @@ impl Trade {
     fn pairs(&self) -> Vec<(&Point, &Point)> {
         let common = self.point("warped", "1e-6").zip(self.point("hammersley", "1024"));
         let meets = |p: &&Point| p.method == "vndf" && p.max_error <= 1e-4;
-        let fewest =
-            self.points.iter().filter(meets).min_by_key(|p| p.evaluations * u64::from(!p.extrapolated));
+        let fewest = self.points.iter().filter(meets).min_by_key(|p| (p.extrapolated, p.evaluations));
         let same_error = self.point("warped", "1e-4").zip(fewest);
         [common, same_error].into_iter().flatten().collect()
     }
