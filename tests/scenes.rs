@@ -694,3 +694,30 @@ fn glb(root: &Value, bin: &[u8]) -> Vec<u8> {
     }
     out
 }
+
+#[test]
+fn recipes_name_their_rule() {
+    let table = |rule: &str| {
+        let text = format!("[[tables]]\nquantity = 'rho_hh'\nmodel = 'ggx'\nroughness = 0.5\n{rule}\n");
+        gonio::scene::parse_recipe(Path::new("r.toml"), text.as_bytes())
+    };
+    let rule = |text: &str| table(text).unwrap().tables[0].rule;
+    assert_eq!(rule(""), None);
+    assert_eq!(rule("rule = 'warped'"), Some(Rule::Warped));
+    assert_eq!(rule("grid = [8, 16]"), Some(Rule::Grid { theta: 8, phi: 16 }));
+    assert_eq!(rule("rule = { grid = [8, 16] }"), Some(Rule::Grid { theta: 8, phi: 16 }));
+    assert_eq!(rule("rule = { gauss = [32, 64] }"), Some(Rule::Gauss { theta: 32, phi: 64 }));
+    assert_eq!(rule("rule = { hammersley = 1024 }"), Some(Rule::Hammersley { samples: 1024 }));
+    assert_eq!(rule("rule = { vndf = 64 }"), Some(Rule::Vndf { samples: 64 }));
+    assert_eq!(rule("rule = { random = 64 }"), Some(Rule::Random { samples: 64 }));
+    for (bad, word) in [
+        ("rule = 'grid'", "warped"),
+        ("rule = { simpson = 8 }", "hammersley"),
+        ("rule = { vndf = 0 }", "count"),
+        ("rule = { vndf = 64, random = 64 }", "one rule"),
+        ("rule = { vndf = 64 }\ngrid = [8, 16]", "keep one"),
+    ] {
+        let why = table(bad).unwrap_err().to_string();
+        assert!(why.contains("line 5") && why.contains(word), "{bad}: {why}");
+    }
+}

@@ -141,7 +141,7 @@ fn lines(trade: &Trade) -> Vec<String> {
             1e-9 * floor.operations_per_second
         ));
     }
-    lines.extend(trade.headlines().into_iter().map(|headline| format!("{HEADING}→{HEADING:#} {headline}")));
+    lines.extend(trade.headlines.iter().map(|headline| format!("{HEADING}→{HEADING:#} {headline}")));
     lines
 }
 

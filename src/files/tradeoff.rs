@@ -21,7 +21,7 @@ const FRONT: Color = [205; 3];
 /// The bytes of a PNG file.
 pub(crate) fn draw(trade: &Trade) -> Result<Vec<u8>> {
     let mut canvas = Canvas::new(1000, 720)?;
-    let frame = Frame { x: LEFT + 10.0, y: 84.0, w: 1000.0 - LEFT - 150.0, h: 720.0 - 84.0 - BELOW - 34.0 };
+    let frame = Frame { x: LEFT + 10.0, y: 84.0, w: 1000.0 - LEFT - 150.0, h: 720.0 - 84.0 - BELOW - 8.0 };
     let drawn = |p: &&Point| p.max_error.is_finite() && p.max_error > 0.0 && p.table_seconds > 0.0;
     let points: Vec<_> = trade.points.iter().filter(drawn).collect();
     let scale = |values: &[f64]| {

@@ -8,13 +8,13 @@ use crate::plan::{Precision, TablePlan};
 use crate::table::Values;
 use std::time::Instant;
 
-/// A table, and the time that it took.
-pub(crate) struct Timing {
+/// A table that is ready to be baked again and again: pipelines are compiled and buffers touched.
+pub(crate) struct Warm<'a> {
+    device: &'a Device,
+    layout: Layout,
+    tiles: Vec<Tile>,
     /// Seconds of the host before the device has anything to do: nodes, factors, upload.
     pub prepare: f64,
-    /// Seconds of the device, run by run.
-    pub runs: Vec<f64>,
-    pub values: Values,
 }
 
 /// What the device can do at most.
@@ -26,15 +26,28 @@ pub(crate) struct Rates {
     pub operations: f64,
 }
 
+impl Warm<'_> {
+    /// Bakes once, and returns the seconds from the first submission to the end of the last.
+    pub fn run(&self) -> Result<f64> {
+        let steps: Vec<_> = self.tiles.iter().flat_map(|tile| &tile.steps).collect();
+        let start = Instant::now();
+        self.device.submit_all(&steps)?;
+        Ok(start.elapsed().as_secs_f64())
+    }
+
+    /// The values of the last run.
+    pub fn values(&self) -> Result<Values> {
+        let mut bytes = Vec::with_capacity(self.layout.bytes(self.layout.units));
+        for tile in &self.tiles {
+            self.device.read_back(tile, &self.layout, &mut bytes)?;
+        }
+        Ok(self.layout.values(&bytes))
+    }
+}
+
 impl Device {
-    /// Bakes a table again and again, warm: pipelines are compiled and buffers touched before the first
-    /// run that counts. `more` is asked before each run, and stops everything by an error.
-    pub(crate) fn time(
-        &self,
-        table: &TablePlan,
-        precision: Precision,
-        more: &dyn Fn(&[f64]) -> Result<bool>,
-    ) -> Result<Timing> {
+    /// Makes a table ready, and bakes it once.
+    pub(crate) fn warm(&self, table: &TablePlan, precision: Precision) -> Result<Warm<'_>> {
         let prepare = || -> Result<(Layout, Vec<Tile>)> {
             let layout = Layout::new(table, precision);
             let stages = self.baker.stages(table, precision)?;
@@ -45,20 +58,9 @@ impl Device {
         drop(prepare()?); // compiles
         let start = Instant::now();
         let (layout, tiles) = prepare()?;
-        let prepare = start.elapsed().as_secs_f64();
-        let steps: Vec<_> = tiles.iter().flat_map(|tile| &tile.steps).collect();
-        self.submit_all(&steps)?;
-        let mut runs = Vec::new();
-        while more(&runs)? {
-            let start = Instant::now();
-            self.submit_all(&steps)?;
-            runs.push(start.elapsed().as_secs_f64());
-        }
-        let mut bytes = Vec::with_capacity(layout.bytes(layout.units));
-        for tile in &tiles {
-            self.read_back(tile, &layout, &mut bytes)?;
-        }
-        Ok(Timing { prepare, runs, values: layout.values(&bytes) })
+        let warm = Warm { device: self, layout, tiles, prepare: start.elapsed().as_secs_f64() };
+        warm.run()?;
+        Ok(warm)
     }
 
     /// As few submissions as the limit on a dispatch allows.

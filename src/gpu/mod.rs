@@ -14,5 +14,5 @@ mod texture;
 pub use baker::{Baker, Recorded};
 pub use compose::{Kernel, compose, validate};
 pub use device::{Adapter, Device, DeviceChoice, INSTALL, adapters};
-pub(crate) use measure::{Rates, Timing};
+pub(crate) use measure::{Rates, Warm};
 pub use texture::TextureFormat;

@@ -18,8 +18,8 @@ pub(super) struct Candidate {
 }
 
 /// Evaluations that a run may have for each second of the budget. The costs double, so that the longest run
-/// of a method takes half of its time; with four runs each of six methods it is a fiftieth of 5 · 10⁸ a
-/// second, what two cores do.
+/// of a method takes half of its time: 2 to 4 runs of it for each of six methods fill the budget on two
+/// cores, which do some 5 · 10⁸ a second.
 const EVALUATIONS_PER_SECOND: f64 = 1e7;
 
 /// What to measure, and what not and why. By counting alone: the same on every machine.
@@ -49,6 +49,8 @@ pub(super) fn candidates(
                 whole,
                 evaluations,
             };
+            // f over (θ, φ) takes several times as long as a sample.
+            let most = if matches!(rule, Rule::Grid { .. } | Rule::Gauss { .. }) { most / 4.0 } else { most };
             match (of(table), of(subset)) {
                 (Ok(all), _) if all.1 as f64 <= most => found.push(take(all, true)),
                 (_, Ok(part)) if part.1 as f64 <= most => found.push(take(part, false)),
@@ -65,6 +67,13 @@ pub(super) fn candidates(
         }
     }
     (found, left_out)
+}
+
+/// The rule of a method at a setting, and its tolerance where it takes one.
+pub(super) fn setting(method: &str, setting: &str) -> Option<(Rule, Option<f64>)> {
+    let found =
+        methods().into_iter().flatten().find(|(name, rule, _)| rule.name() == method && name == setting);
+    found.map(|(_, rule, tolerance)| (rule, tolerance))
 }
 
 type Setting = (String, Rule, Option<f64>);

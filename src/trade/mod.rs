@@ -5,6 +5,7 @@ mod candidates;
 mod floor;
 mod front;
 mod subset;
+mod timing;
 #[cfg(feature = "files")]
 mod write;
 
@@ -15,18 +16,17 @@ pub use write::write;
 
 use crate::bake::{Evaluator, Observer};
 use crate::check;
-use crate::cpu;
 use crate::error::{Error, Result};
-use crate::gpu::Timing;
 use crate::plan::{Precision, TablePlan};
 use crate::quantity::Evaluation;
-use crate::table::Values;
 use candidates::{Candidate, candidates};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::HashMap;
+use std::fmt;
 use std::time::Instant;
 use subset::Subset;
+use timing::{Timing, median, rounds, time};
 
 /// How much to measure.
 #[derive(Debug, Clone, Copy)]
@@ -60,8 +60,29 @@ pub struct Trade {
     pub floor: Option<Floor>,
     /// The points, method by method, the cheapest first.
     pub points: Vec<Point>,
+    /// The comparisons that matter.
+    pub headlines: Vec<Headline>,
     /// What was not measured, and why.
     pub left_out: Vec<String>,
+}
+
+/// Two points, timed in turns.
+#[derive(Debug, Clone, Serialize)]
+pub struct Headline {
+    /// This project's method and setting.
+    pub ours: String,
+    /// The other's.
+    pub theirs: String,
+    /// Their time over ours: the median over the rounds.
+    pub ratio: f64,
+    /// The smallest.
+    pub ratio_min: f64,
+    /// The largest.
+    pub ratio_max: f64,
+    /// The largest errors, ours and theirs.
+    pub errors: [f64; 2],
+    /// Whether their time is extrapolated from the subset, and no turns were taken.
+    pub extrapolated: bool,
 }
 
 /// One method at one cost.
@@ -130,10 +151,7 @@ pub fn measure(
     let mut points = Vec::new();
     for candidate in candidates {
         observer.begin(&format!("{} {}", candidate.method, candidate.setting));
-        let more = |runs: &[f64]| -> Result<bool> {
-            observer.advance(0.0)?;
-            Ok(enough_patience(runs, start.elapsed().as_secs_f64() < options.budget))
-        };
+        let in_budget = || start.elapsed().as_secs_f64() < options.budget;
         let precision = match evaluator {
             Evaluator::Device(device) if candidate.precision == Precision::F64 && !device.has_f64() => {
                 left_out.push(format!("{} {}: the device has no f64", candidate.method, candidate.setting));
@@ -142,55 +160,34 @@ pub fn measure(
             Evaluator::Device(_) => candidate.precision,
             Evaluator::Cpu => Precision::F64,
         };
-        let timing = time(evaluator, &candidate.plan, precision, &more)?;
+        let timing = time(evaluator, &candidate.plan, precision, &in_budget, &|| observer.advance(0.0))?;
         points.push(truth.point(table, &subset, candidate, timing, precision, rates));
     }
     let places: Vec<_> = points.iter().map(|p| (p.table_seconds, p.max_error, !p.extrapolated)).collect();
     for (point, on_front) in points.iter_mut().zip(front(&places)) {
         point.on_front = on_front;
     }
-    Ok(Trade {
-        table: table.to_string(),
+    let mut trade = Trade {
+        table: in_words(table),
         shape: table.shape(),
         subset_texels: subset.texels.len(),
         subset: subset.to_string(),
         floor: rates.map(Floor::new),
         points,
+        headlines: Vec::new(),
         left_out,
-    })
+    };
+    let pairs = trade.pairs().into_iter();
+    let headlines = pairs.map(|pair| headline(evaluator, table, pair, observer)).collect::<Result<_>>()?;
+    trade.headlines = headlines;
+    Ok(trade)
 }
 
-/// Whether one more run is worth its time: 3 at least, up to 21 while they are short; 1 will do once the
-/// budget is spent. The number of runs changes no result.
-fn enough_patience(runs: &[f64], in_budget: bool) -> bool {
-    const SHORT: f64 = 0.3;
-    let least = if in_budget { 3 } else { 1 };
-    runs.len() < least || in_budget && runs.len() < 21 && runs.iter().sum::<f64>() < SHORT
-}
-
-fn time(
-    evaluator: &Evaluator,
-    plan: &TablePlan,
-    precision: Precision,
-    more: &dyn Fn(&[f64]) -> Result<bool>,
-) -> Result<Timing> {
-    match evaluator {
-        Evaluator::Device(device) => device.time(plan, precision, more),
-        Evaluator::Cpu => {
-            let start = Instant::now();
-            plan.lobes.iter().for_each(|lobe| drop(crate::work::Work::new(plan, lobe)));
-            let prepare = start.elapsed().as_secs_f64();
-            let run = || cpu::evaluate(plan, &|_| Ok::<_, Error>(()));
-            let mut values = run()?;
-            let mut runs = Vec::new();
-            while more(&runs)? {
-                let start = Instant::now();
-                values = run()?;
-                runs.push(start.elapsed().as_secs_f64());
-            }
-            Ok(Timing { prepare, runs, values: Values::F64(values) })
-        }
-    }
+/// What is measured; not by which rule.
+fn in_words(table: &TablePlan) -> String {
+    let axes: Vec<_> = table.axes.iter().map(|a| format!("{} {}", a.variable.name(), a.len())).collect();
+    let over = if axes.is_empty() { String::new() } else { format!(" over {}", axes.join(" × ")) };
+    format!("{} of {}{over}", table.quantity.name, table.subject)
 }
 
 /// The reference's channels, by texel of the whole table.
@@ -274,61 +271,62 @@ impl Truth {
     }
 }
 
-/// The middle of a sorted list, or the mean of the two middles.
-fn median(sorted: &[f64]) -> f64 {
-    match sorted.len() {
-        0 => f64::NAN,
-        n if n % 2 == 1 => sorted[n / 2],
-        n => 0.5 * (sorted[n / 2 - 1] + sorted[n / 2]),
-    }
-}
-
 impl Trade {
     /// The point of a method at a setting.
     pub fn point(&self, method: &str, setting: &str) -> Option<&Point> {
         self.points.iter().find(|p| p.method == method && p.setting == setting)
     }
 
-    /// The comparisons that matter, in words: with 1024 samples as most bakers take them, and at 1e-4.
-    pub fn headlines(&self) -> Vec<String> {
-        let ratio = |ours: &Point, theirs: &Point| {
-            let label = if theirs.extrapolated { ", extrapolated" } else { "" };
-            format!(
-                "{} {} takes {:.1} × the time of {} {}{label}: {:.2} against {:.2} ms, with errors of {:.1e} and {:.1e}",
-                theirs.method,
-                theirs.setting,
-                theirs.table_seconds / ours.table_seconds,
-                ours.method,
-                ours.setting,
-                1e3 * theirs.table_seconds,
-                1e3 * ours.table_seconds,
-                theirs.max_error,
-                ours.max_error
-            )
-        };
+    /// The comparisons that matter: with 1024 samples as most bakers take them, and at an error of 1e-4.
+    fn pairs(&self) -> Vec<(&Point, &Point)> {
         let common = self.point("warped", "1e-6").zip(self.point("hammersley", "1024"));
         let meets = |p: &&Point| p.method == "vndf" && p.max_error <= 1e-4;
-        let fastest =
-            self.points.iter().filter(meets).min_by(|a, b| a.table_seconds.total_cmp(&b.table_seconds));
-        let same_error = self.point("warped", "1e-4").zip(fastest);
-        [common, same_error].into_iter().flatten().map(|(ours, theirs)| ratio(ours, theirs)).collect()
+        let fewest = self.points.iter().filter(meets).min_by_key(|p| (p.extrapolated, p.evaluations));
+        let same_error = self.point("warped", "1e-4").zip(fewest);
+        [common, same_error].into_iter().flatten().collect()
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// Times a pair again, in turns, so that a machine that is slower for a while is so for both.
+fn headline(
+    evaluator: &Evaluator,
+    table: &TablePlan,
+    (ours, theirs): (&Point, &Point),
+    observer: &dyn Observer,
+) -> Result<Headline> {
+    let plan = |p: &Point| -> Result<TablePlan> {
+        let (rule, tolerance) = candidates::setting(p.method, &p.setting)
+            .ok_or_else(|| Error::Internal(format!("no method {} {}", p.method, p.setting)))?;
+        Ok(table.clone().with_rule(rule)?.with_tolerance(tolerance.unwrap_or(table.tolerance)))
+    };
+    let (times, measured) = if theirs.extrapolated {
+        ([ours, theirs].map(|p| vec![p.table_seconds]), false)
+    } else {
+        (rounds(evaluator, [&plan(ours)?, &plan(theirs)?], &|| observer.advance(0.0))?, true)
+    };
+    let mut ratios: Vec<_> = times[0].iter().zip(&times[1]).map(|(ours, theirs)| theirs / ours).collect();
+    ratios.sort_by(f64::total_cmp);
+    let name = |p: &Point| format!("{} {}", p.method, p.setting);
+    Ok(Headline {
+        ours: name(ours),
+        theirs: name(theirs),
+        ratio: median(&ratios),
+        ratio_min: ratios.first().copied().unwrap_or(f64::NAN),
+        ratio_max: ratios.last().copied().unwrap_or(f64::NAN),
+        errors: [ours.max_error, theirs.max_error],
+        extrapolated: !measured,
+    })
+}
 
-    #[test]
-    fn the_median_is_in_the_middle() {
-        assert_eq!((median(&[1.0, 2.0, 9.0]), median(&[1.0, 2.0, 4.0, 9.0])), (2.0, 3.0));
-        assert!(median(&[]).is_nan());
-    }
-
-    #[test]
-    fn runs_are_three_at_least_and_one_when_late() {
-        assert!(enough_patience(&[9.0, 9.0], true) && !enough_patience(&[9.0; 3], true));
-        assert!(enough_patience(&[0.01; 20], true) && !enough_patience(&[0.01; 21], true));
-        assert!(enough_patience(&[], false) && !enough_patience(&[0.01], false));
+impl fmt::Display for Headline {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { ours, theirs, ratio, ratio_min, ratio_max, errors, extrapolated } = self;
+        write!(f, "{theirs} takes {ratio:.1} × the time of {ours}")?;
+        if *extrapolated {
+            write!(f, " (extrapolated from a subset of the texels)")?;
+        } else {
+            write!(f, " ({ratio_min:.1} – {ratio_max:.1}, run in turns)")?;
+        }
+        write!(f, ", with errors of {:.1e} and {:.1e}", errors[1], errors[0])
     }
 }

@@ -39,7 +39,6 @@ fn to_json(trade: &Trade, device: &Value) -> Value {
         "gonio": { "version": env!("CARGO_PKG_VERSION") },
         "device": device,
         "trade": trade,
-        "headlines": trade.headlines(),
     })
 }
 
