@@ -52,7 +52,8 @@ pub(crate) fn optimise(table: TablePlan, auto: &[Variable], storage: Option<Stor
     let mut found = found.into_iter();
     let chosen = found.next().ok_or_else(|| {
         Error::input(format!(
-            "table \"{}\": no size up to {MOST} meets {:e} bilinearly; allow more, or narrow the range",
+            "table \"{}\": no size of its auto axes up to {MOST} meets {:e} bilinearly; allow more, narrow the range, or \
+             give its other axis more samples",
             table.name, table.tolerance
         ))
     })?;

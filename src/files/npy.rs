@@ -17,7 +17,7 @@ fn write(table: &Table) -> std::io::Result<Vec<u8>> {
     let shape: Vec<u64> = shape.map(|n| n as u64).collect();
     // Little-endian on every machine, so that the same table gives the same bytes.
     match (&table.values, table.storage) {
-        (values, Storage::F16) => array("<f2", &shape, values.iter().map(|v| f16::from_f64(v))),
+        (values, Storage::F16) => array("<f2", &shape, values.iter().map(f16::from_f64)),
         // Stored values are k/65535 to within f32: rounding gives k back.
         (values, Storage::Unorm16) => array("<u2", &shape, values.iter().map(|v| (v * UNORM).round() as u16)),
         (Values::F32(values), _) => array("<f4", &shape, values.iter().copied()),
