@@ -24,7 +24,9 @@
 //! | [`trade`] | every method at every cost: time and error, and the front | files, devices |
 //! | [`bake`] | the order of it all: evaluate, look, check, write | how any of it is done |
 //! | [`storage`], `interpolation`, `optimise` | what rounding and bilinear look-ups cost, and the least bytes for a tolerance | devices, files |
-//! | [`table`], [`axis`], [`quantity`] | what a table is | where it came from |
+//! | [`table`], [`axis`], [`quantity`], [`storage`] | what a table is | where it came from |
+//! | `interpolation`, `optimise` | what a bilinear reader gets, and the cheapest table for it | devices |
+//! | [`trade`] | every method at every cost, timed and compared | files |
 //! | `files` | EXR, NPY, PNG, the manifest; sets written all or nothing | physics |
 //!
 //! Three evaluations of each model exist, on purpose. The **shader** and its **twin** (same file name,
