@@ -141,8 +141,9 @@ impl TablePlan {
         }
         // Counts multiply beyond any usize.
         let values = self.axes.iter().try_fold(self.channels.len(), |n, axis| n.checked_mul(axis.len()));
-        if values.is_none_or(|n| n > MAX_VALUES) {
-            return refuse(format!("it has more than {MAX_VALUES} values; take fewer samples"));
+        let most = if self.quantity.evaluation == Evaluation::Value { MAX_STREAMED } else { MAX_VALUES };
+        if values.is_none_or(|n| n > most) {
+            return refuse(format!("it has more than {most} values; take fewer samples"));
         }
         let factors = self.factors();
         if factors > MAX_FACTORS {
@@ -225,8 +226,12 @@ impl TablePlan {
 /// The tolerance where nobody names one.
 pub const DEFAULT_TOLERANCE: f64 = 1e-4;
 
-/// The most values of a table: 1 GiB as stored, and 2 more in f64 on the CPU path.
+/// The most values of a table of integrals: 1 GiB as stored, and 2 more in f64 on the CPU path.
 const MAX_VALUES: usize = 1 << 28;
+
+/// The most values of a table of values, which need not fit memory: 32 GiB as stored, and the device
+/// counts its quads in 32 bits.
+const MAX_STREAMED: usize = 1 << 33;
 
 /// The most factors of a table: 32 bytes each in the 128 MiB that every device binds.
 const MAX_FACTORS: usize = 1 << 22;

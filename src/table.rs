@@ -95,16 +95,20 @@ impl Table {
     /// Refuses a table with a value that is not finite or is negative: the device may not say so
     /// itself (WGSL lets an implementation assume that NaN does not occur), so the host looks.
     pub fn check_sane(&self) -> Result<()> {
+        self.check_sane_from(0, &self.values)
+    }
+
+    /// The same of a part of its values, which begin at a texel.
+    pub(crate) fn check_sane_from(&self, texel: usize, values: &[f32]) -> Result<()> {
         let channels = self.channels.len();
-        let Some(at) = self.values.iter().position(|v| !v.is_finite() || v.is_sign_negative() && *v != 0.0)
-        else {
+        let Some(at) = values.iter().position(|v| !v.is_finite() || v.is_sign_negative() && *v != 0.0) else {
             return Ok(());
         };
         Err(Error::Promise(format!(
             "table {}: {} at {}; a BRDF is finite and non-negative",
             self.name,
-            self.values[at],
-            self.place(at / channels),
+            values[at],
+            self.place(texel + at / channels),
         )))
     }
 

@@ -2,9 +2,13 @@
 
 #[cfg(feature = "files")]
 mod set;
+#[cfg(feature = "files")]
+mod stream;
 
 #[cfg(feature = "files")]
 pub use set::{Baked, Options, bake_set};
+#[cfg(feature = "files")]
+pub use stream::{Progress, Streaming};
 
 use crate::check::{Check, cross_check};
 use crate::cpu;
@@ -12,7 +16,7 @@ use crate::error::{Error, Result};
 use crate::gpu::{Device, DeviceChoice};
 use crate::plan::{Rule, TablePlan};
 use crate::quantity::Evaluation;
-use crate::table::Table;
+use crate::table::{Table, TableError};
 use serde::Serialize;
 use std::time::Instant;
 
@@ -126,7 +130,15 @@ impl Evaluator {
         let start = Instant::now();
         let error = cross_check(plan, &values, check, self.estimate(plan), &tick)?;
         stages.check += start.elapsed().as_secs_f64();
-        let table = Table {
+        let table = self.table(plan, values, error, seconds);
+        table.check_sane()?;
+        check_energy(plan, &table)?;
+        Ok(table)
+    }
+
+    /// The table of a plan, with what was found.
+    fn table(&self, plan: &TablePlan, values: Vec<f32>, error: TableError, seconds: f64) -> Table {
+        Table {
             name: plan.name.clone(),
             quantity: plan.quantity.name.into(),
             unit: plan.quantity.unit.into(),
@@ -143,10 +155,7 @@ impl Evaluator {
             precision: self.precision().into(),
             error,
             seconds,
-        };
-        table.check_sane()?;
-        check_energy(plan, &table)?;
-        Ok(table)
+        }
     }
 
     /// What a rule promises before anything is measured, over all parameters; the tests of

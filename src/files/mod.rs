@@ -10,10 +10,13 @@ mod panel;
 mod png;
 mod scale;
 mod set;
+mod stream;
 
 pub use entry::TableEntry;
 pub use manifest::{read_manifest, sha256, verify};
+pub(crate) use manifest::hash;
 pub use set::{Files, TableSet};
+pub(crate) use stream::Tiles;
 
 use crate::error::{Error, Result};
 use crate::table::Table;

@@ -160,18 +160,25 @@ impl Baker {
 
     /// The steps of one tile, and the buffer that they fill.
     pub(super) fn tile(&self, layout: &Layout, stages: &[Stages], units: Range<usize>) -> Result<Tile> {
-        let mut tile = Tile { buffer: self.output(layout.bytes(units.len())), steps: Vec::new() };
+        let buffer = self.output(layout.bytes(units.len()));
+        let steps = self.fill(&buffer, stages, units)?;
+        Ok(Tile { buffer, steps })
+    }
+
+    /// The steps that fill a buffer with some units.
+    pub(super) fn fill(&self, buffer: &wgpu::Buffer, stages: &[Stages], units: Range<usize>) -> Result<Vec<Step>> {
+        let mut steps = Vec::new();
         for Stages { inner, sum } in stages {
             match sum {
-                None => self.steps(inner, &[], &units, &tile.buffer, &mut tile.steps)?,
+                None => self.steps(inner, &[], &units, buffer, &mut steps)?,
                 Some(sum) => {
                     let raw = self.output(units.len() * inner.per_unit * RAW_BYTES);
-                    self.steps(inner, &[], &units, &raw, &mut tile.steps)?;
-                    self.steps(sum, &[&raw], &units, &tile.buffer, &mut tile.steps)?;
+                    self.steps(inner, &[], &units, &raw, &mut steps)?;
+                    self.steps(sum, &[&raw], &units, buffer, &mut steps)?;
                 }
             }
         }
-        Ok(tile)
+        Ok(steps)
     }
 
     /// The dispatches of a stage over some units: as many as the cost asks for.

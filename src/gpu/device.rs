@@ -43,6 +43,7 @@ pub struct Device {
     pub(crate) baker: Baker,
     /// What wgpu says of its adapter.
     pub info: wgpu::AdapterInfo,
+    adapter: Adapter,
     fault: Arc<Mutex<Option<String>>>,
 }
 
@@ -101,7 +102,17 @@ impl Adapter {
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             first.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error.to_string());
         }));
-        Ok(Device { baker: Baker::new(&device, &queue), info: self.info.clone(), fault })
+        let lost = fault.clone();
+        device.set_device_lost_callback(move |reason, why| {
+            let what = format!("the device is lost ({reason:?}) {why}");
+            lost.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(what);
+        });
+        Ok(Device {
+            baker: Baker::new(&device, &queue),
+            info: self.info.clone(),
+            adapter: self.clone(),
+            fault,
+        })
     }
 }
 
@@ -157,6 +168,11 @@ impl Device {
                 Ok((Some(device), line))
             }
         }
+    }
+
+    /// A new device on the same adapter, after this one was lost.
+    pub(crate) fn reopen(&self) -> Result<Self> {
+        self.adapter.open()
     }
 
     /// The adapter's name.
