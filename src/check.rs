@@ -129,7 +129,8 @@ impl<'a> Comparison<'a> {
                     self.error.measured_max = Some(difference);
                     let coordinates = table.axes.iter().zip(indices(&table.shape(), texel));
                     let worst = &mut self.error.worst;
-                    *worst = coordinates.map(|(axis, k)| (axis.variable.name().into(), axis.values[k])).collect();
+                    *worst =
+                        coordinates.map(|(axis, k)| (axis.variable.name().into(), axis.values[k])).collect();
                     worst.insert("channel".into(), channel as f64);
                     worst.insert("value".into(), f64::from(value));
                     worst.insert("reference".into(), truth);

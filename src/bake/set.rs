@@ -104,7 +104,8 @@ pub fn bake_set(
     let mut set = TableSet::create(dir)?;
     let (mut tables, mut written, mut misses) = (Vec::new(), Vec::new(), Vec::new());
     let streams = |table: &&TablePlan| options.streaming.takes(table);
-    let key = |table: &TablePlan| stream::key(table, &scene.sha256, &provenance["device"], &options.streaming);
+    let key =
+        |table: &TablePlan| stream::key(table, &scene.sha256, &provenance["device"], &options.streaming);
     let keys: BTreeSet<_> = plan.tables.iter().filter(streams).map(key).collect();
     let mut progress = Progress::default();
     for table_plan in &plan.tables {
@@ -124,7 +125,14 @@ pub fn bake_set(
                 observer.begin(&format!("writing {}", table.name));
                 let start = Instant::now();
                 let tick = &mut |share| observer.advance(share);
-                written.push(set.write_streamed(&table, &tiles, &preview, &options.formats, &provenance, tick)?);
+                written.push(set.write_streamed(
+                    &table,
+                    &tiles,
+                    &preview,
+                    &options.formats,
+                    &provenance,
+                    tick,
+                )?);
                 stages.write += start.elapsed().as_secs_f64();
             }
             tables.push(table);

@@ -3,13 +3,13 @@
 use super::{Evaluator, Observer, Options, Stages};
 use crate::axis::Axis;
 use crate::check::Comparison;
+use crate::cpu;
 use crate::error::{Error, Result};
 use crate::files::{self, Tiles};
 use crate::gpu::{Kernel, compose};
 use crate::plan::TablePlan;
 use crate::quantity::Evaluation;
 use crate::table::{Table, indices};
-use crate::cpu;
 use std::ops::Range;
 
 /// Which tables are baked and written piece by piece, in bounded memory. The files are the same.
@@ -180,8 +180,11 @@ impl Preview {
 
     fn axes(&self, plan: &TablePlan) -> Vec<Axis> {
         let axes = plan.axes.iter().zip(&self.chosen);
-        axes.map(|(axis, chosen)| Axis { values: chosen.iter().map(|&k| axis.values[k]).collect(), ..axis.clone() })
-            .collect()
+        axes.map(|(axis, chosen)| Axis {
+            values: chosen.iter().map(|&k| axis.values[k]).collect(),
+            ..axis.clone()
+        })
+        .collect()
     }
 
     /// Takes what it has chosen of whole rows.

@@ -116,7 +116,10 @@ pub fn run(args: &Args) -> Result<()> {
     baked.warnings[plan.warnings.len()..].iter().for_each(|w| warn(w));
     summary(&say, &plan, &baked)?;
     if baked.tiles.found > 0 {
-        say.line(&format!("{} of {} tiles were there from an earlier bake", baked.tiles.found, baked.tiles.all))?;
+        say.line(&format!(
+            "{} of {} tiles were there from an earlier bake",
+            baked.tiles.found, baked.tiles.all
+        ))?;
     }
     say.line(&format!("{} tables in {}", baked.tables.len(), out.display()))?;
     if args.json { print_json(&baked.manifest) } else { Ok(()) }

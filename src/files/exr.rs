@@ -3,13 +3,13 @@
 use super::{Provenance, entry};
 use crate::error::{Error, Result};
 use crate::table::Table;
+use ::exr::image::write::layers::WritableLayers;
+use ::exr::meta::header::Header;
+use ::exr::meta::{MetaData, magic_number};
 use ::exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, Layer, LayerAttributes, Text,
     WritableImage,
 };
-use ::exr::image::write::layers::WritableLayers;
-use ::exr::meta::header::Header;
-use ::exr::meta::{MetaData, magic_number};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::Cursor;

@@ -13,8 +13,8 @@ mod set;
 mod stream;
 
 pub use entry::TableEntry;
-pub use manifest::{read_manifest, sha256, verify};
 pub(crate) use manifest::hash;
+pub use manifest::{read_manifest, sha256, verify};
 pub use set::{Files, TableSet};
 pub(crate) use stream::Tiles;
 

@@ -2,9 +2,9 @@
 
 use super::compose::{Kernel, compose, validate};
 use super::stage::{Job, Stage, Stages};
+use crate::axis::Variable;
 use crate::error::{Error, Result};
 use crate::models::Model;
-use crate::axis::Variable;
 use crate::plan::TablePlan;
 use crate::quantity::Evaluation;
 use crate::slopes::TILE_ALPHAS;
@@ -41,6 +41,13 @@ pub struct Recorded {
     pub height: usize,
     /// Channels of a texel.
     pub channels: usize,
+}
+
+/// A table whose buffers and pipelines are there.
+pub struct Prepared {
+    /// Where it will be.
+    pub recorded: Recorded,
+    steps: Vec<Step>,
 }
 
 /// One dispatch, ready to encode.
@@ -121,6 +128,17 @@ impl Baker {
     /// # Errors
     /// When the table does not fit one binding of the device.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, table: &TablePlan) -> Result<Recorded> {
+        let prepared = self.prepare(table)?;
+        prepared.encode(encoder);
+        Ok(prepared.recorded)
+    }
+
+    /// All that [`record`](Self::record) needs, made once: for whoever bakes the same table again and
+    /// again into the same buffer.
+    ///
+    /// # Errors
+    /// When the table does not fit one binding of the device.
+    pub fn prepare(&self, table: &TablePlan) -> Result<Prepared> {
         let layout = Layout::new(table);
         let stages = self.stages(table)?;
         let raw = stages.iter().map(Stages::raw_bytes_per_unit).max().unwrap_or(0) * layout.units;
@@ -134,18 +152,16 @@ impl Baker {
             )));
         }
         let tile = self.tile(&layout, &stages, 0..layout.units)?;
-        for step in &tile.steps {
-            step.encode(encoder);
-        }
         let width = table.axes.last().map_or(1, |axis| axis.len());
         let row = if is_value(table) { layout.padded } else { width };
-        Ok(Recorded {
+        let recorded = Recorded {
             buffer: tile.buffer,
             width,
             row,
             height: table.texels() / width,
             channels: layout.channels,
-        })
+        };
+        Ok(Prepared { recorded, steps: tile.steps })
     }
 
     /// The work of every lobe of a table, uploaded.
@@ -166,7 +182,12 @@ impl Baker {
     }
 
     /// The steps that fill a buffer with some units.
-    pub(super) fn fill(&self, buffer: &wgpu::Buffer, stages: &[Stages], units: Range<usize>) -> Result<Vec<Step>> {
+    pub(super) fn fill(
+        &self,
+        buffer: &wgpu::Buffer,
+        stages: &[Stages],
+        units: Range<usize>,
+    ) -> Result<Vec<Step>> {
         let mut steps = Vec::new();
         for Stages { inner, sum } in stages {
             match sum {
@@ -192,7 +213,8 @@ impl Baker {
     ) -> Result<()> {
         let pipeline = self.pipeline(stage.kernel, stage.model, stage.channels)?;
         let layout = pipeline.get_bind_group_layout(0);
-        let range = units.start / stage.units * stage.per_unit..units.end.div_ceil(stage.units) * stage.per_unit;
+        let range =
+            units.start / stage.units * stage.per_unit..units.end.div_ceil(stage.units) * stage.per_unit;
         let base = count(units.start * stage.per_unit)?;
         let per_step = (EVALUATIONS_PER_DISPATCH / stage.cost).clamp(WORKGROUP, INVOCATIONS_PER_DISPATCH);
         for first in range.clone().step_by(per_step) {
@@ -286,6 +308,13 @@ pub(super) const RAW_BYTES: usize = 8;
 pub(super) fn count(n: usize) -> Result<u32> {
     u32::try_from(n)
         .map_err(|_| Error::Device(format!("{n} is more than a device counts to; take fewer samples")))
+}
+
+impl Prepared {
+    /// Records the baking. Does not submit or block.
+    pub fn encode(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.steps.iter().for_each(|step| step.encode(encoder));
+    }
 }
 
 impl Step {

@@ -195,6 +195,11 @@ impl Device {
         &self.baker
     }
 
+    /// The device and its queue.
+    pub fn wgpu(&self) -> (&wgpu::Device, &wgpu::Queue) {
+        (&self.baker.device, &self.baker.queue)
+    }
+
     /// The first error that the device reported, if it did.
     pub(super) fn fault(&self) -> Result<()> {
         match self.fault.lock().unwrap_or_else(PoisonError::into_inner).take() {

@@ -10,7 +10,7 @@ mod evaluate;
 mod stage;
 mod texture;
 
-pub use baker::{Baker, Recorded};
+pub use baker::{Baker, Prepared, Recorded};
 pub use compose::{Kernel, compose, validate};
 pub use device::{Adapter, Device, DeviceChoice, INSTALL, adapters};
 pub use texture::TextureFormat;

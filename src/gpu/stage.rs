@@ -98,8 +98,10 @@ impl Stage {
         let (kernel, azimuths, nodes, inputs) = match inner {
             Inner::Slopes(work) => {
                 // What is so near the mirror that it is the mirror's in f64 is 0 to the kernel.
-                let mut alphas: Vec<_> =
-                    alphas.iter().map(|&alpha| if alpha < ALPHA_MIN_INTEGRAL { 0.0 } else { alpha }).collect();
+                let mut alphas: Vec<_> = alphas
+                    .iter()
+                    .map(|&alpha| if alpha < ALPHA_MIN_INTEGRAL { 0.0 } else { alpha })
+                    .collect();
                 let rows = alphas.len();
                 alphas.resize(rows.next_multiple_of(TILE_ALPHAS), 1.0);
                 let pair = |[a, b]: [Range<usize>; 2]| [a.start, a.len(), b.start, b.len()].map(|n| n as u32);
@@ -132,7 +134,16 @@ impl Stage {
             ..Job::zeroed()
         };
         let units = if kernel == Kernel::Slopes { TILE_ALPHAS } else { 1 };
-        Ok(Self { kernel, model: None, channels: 0, job, inputs, per_unit: 1, units, cost: units * inner.cost() })
+        Ok(Self {
+            kernel,
+            model: None,
+            channels: 0,
+            job,
+            inputs,
+            per_unit: 1,
+            units,
+            cost: units * inner.cost(),
+        })
     }
 }
 

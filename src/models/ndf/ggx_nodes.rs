@@ -116,12 +116,15 @@ mod tests {
                 most
             })
             .collect();
-        println!("/// [near nodes, far nodes, near azimuths, far azimuths] for each tolerance, μ bin and α bin.");
+        println!(
+            "/// [near nodes, far nodes, near azimuths, far azimuths] for each tolerance, μ bin and α bin."
+        );
         println!("#[rustfmt::skip]\nconst COUNTS: [[[[u8; 4]; 10]; 10]; DECADES] = [");
         for decade in 0..DECADES {
             println!("    [ // 1e-{}", decade + 1);
             for mu in 0..10 {
-                let row: Vec<_> = (0..10).map(|alpha| format!("{:?}", table[10 * mu + alpha][decade])).collect();
+                let row: Vec<_> =
+                    (0..10).map(|alpha| format!("{:?}", table[10 * mu + alpha][decade])).collect();
                 println!("        [{}],", row.join(", "));
             }
             println!("    ],");
