@@ -101,6 +101,14 @@ pub(crate) struct PairF32([f32; 8]);
 #[repr(C)]
 pub(crate) struct AzimuthF32([f32; 4]);
 
+impl PairF32 {
+    /// A row of values.
+    pub fn with_alpha(mut self, alpha: f64) -> Self {
+        self.0[7] = alpha as f32;
+        self
+    }
+}
+
 impl From<&Pair> for PairF32 {
     fn from(p: &Pair) -> Self {
         Self([p.hz2, p.dt2, p.ss, p.sd, p.mu_i, p.mu_e, p.bin, 0.0].map(|x| x as f32))

@@ -7,6 +7,7 @@ use common::*;
 use gonio::bake::{Baked, Evaluator, Observer, Options, Stages, Streaming, Unobserved, bake_set};
 use gonio::check::Check;
 use gonio::files::Format;
+use gonio::gpu::DeviceChoice;
 use gonio::plan::{Plan, Selection};
 use gonio::{Result, scene};
 use std::collections::BTreeMap;
@@ -178,6 +179,27 @@ fn any_difference_starts_over() {
     assert_eq!(baked.tiles.found, 0);
 }
 
+/// A device that is lost is opened once more, and the bake goes on with the tile that it was at.
+#[test]
+fn a_lost_device_is_opened_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let recipe = recipe(folder.path(), RECIPE);
+    let bake = |evaluator: &Evaluator, out: &str, observer: &dyn Observer| {
+        let out = folder.path().join(out);
+        bake_recipe(evaluator, &recipe, &out, SMALL, Check::Sample(100), observer).map(|_| files(&out))
+    };
+    let Ok((Evaluator::Device(own), _)) = Evaluator::choose(&DeviceChoice::Auto) else { panic!("no device") };
+    let handle = own.wgpu().0.clone();
+    let destroy = || {
+        handle.destroy();
+        Ok(())
+    };
+    let lost = Stop::after(5, &destroy);
+    let own = Evaluator::Device(own);
+    let after = bake(&own, "lost", &lost).unwrap();
+    assert!(after == bake(device(), "kept", &Unobserved).unwrap());
+}
+
 /// Does something else once so many tiles are done.
 struct Stop<'a> {
     state: Mutex<(Step, usize)>,
@@ -203,7 +225,10 @@ impl Observer for Stop<'_> {
 
     fn advance(&self, _: f64) -> Result<()> {
         let (step, left) = &mut *self.state.lock().unwrap();
-        *left -= usize::from(*step == Step::Baking);
+        if *step == Step::Other || *left == 0 {
+            return Ok(());
+        }
+        *left -= 1;
         if *left == 0 { (self.then)() } else { Ok(()) }
     }
 }

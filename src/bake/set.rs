@@ -108,11 +108,21 @@ pub fn bake_set(
         |table: &TablePlan| stream::key(table, &scene.sha256, &provenance["device"], &options.streaming);
     let keys: BTreeSet<_> = plan.tables.iter().filter(streams).map(key).collect();
     let mut progress = Progress::default();
+    // A device that is lost is opened once more.
+    let mut spare = None;
     for table_plan in &plan.tables {
         if streams(&table_plan) {
             let tiles = set.tiles(&keys, &key(table_plan))?;
-            let streamed =
-                stream::bake(evaluator, table_plan, &tiles, options, &mut progress, &mut stages, observer);
+            let streamed = stream::bake(
+                evaluator,
+                &mut spare,
+                table_plan,
+                &tiles,
+                options,
+                &mut progress,
+                &mut stages,
+                observer,
+            );
             let (table, preview) = streamed.inspect_err(|error| {
                 if matches!(error, Error::Promise(_)) {
                     let _ = set.discard_tiles(); // the same tiles would break the promise again
@@ -138,7 +148,12 @@ pub fn bake_set(
             tables.push(table);
             continue;
         }
-        let table = evaluator.bake(table_plan, options.check, &mut stages, observer)?;
+        let bake =
+            |now: &Evaluator, stages: &mut Stages| now.bake(table_plan, options.check, stages, observer);
+        let table = match bake(spare.as_ref().unwrap_or(evaluator), &mut stages) {
+            Err(Error::Device(_)) if spare.is_none() => bake(spare.insert(evaluator.reopen()?), &mut stages),
+            result => result,
+        }?;
         if let Err(miss) = within_tolerance(table_plan, &table) {
             misses.push(miss.to_string());
         }

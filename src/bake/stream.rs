@@ -66,8 +66,12 @@ pub(super) fn key(table: &TablePlan, scene: &str, device: &str, streaming: &Stre
 
 /// Bakes a table into `tiles` and measures its error. Returns it without its values, and a part of it to
 /// look at. Tiles that are there already are checked like new ones, but not computed.
+///
+/// `spare` takes the place of a device that is lost; nothing takes the place of the spare one.
+#[allow(clippy::too_many_arguments)]
 pub(super) fn bake(
     evaluator: &Evaluator,
+    spare: &mut Option<Evaluator>,
     plan: &TablePlan,
     tiles: &Tiles,
     options: &Options,
@@ -87,8 +91,6 @@ pub(super) fn bake(
         done: 0,
     };
     progress.all += ranges.len();
-    // A device that is lost is opened once more.
-    let mut reopened = None;
     while pass.done < ranges.len() {
         let first = pass.done;
         let share = |k: usize| ranges[k].len() as f64 / ranges[ranges.len() - 1].end as f64;
@@ -105,12 +107,9 @@ pub(super) fn bake(
             pass.take(texels(first + k), values)?;
             observer.advance(share(first + k))
         };
-        let now = reopened.as_ref().unwrap_or(evaluator);
-        match (now.stream(plan, &ranges[first..end], stages, &mut keep), evaluator) {
-            (Err(Error::Device(_)), Evaluator::Device(device)) if reopened.is_none() => {
-                reopened = Some(Evaluator::Device(Box::new(device.reopen()?)));
-            }
-            (result, _) => result?,
+        match spare.as_ref().unwrap_or(evaluator).stream(plan, &ranges[first..end], stages, &mut keep) {
+            Err(Error::Device(_)) if spare.is_none() => *spare = Some(evaluator.reopen()?),
+            result => result?,
         }
     }
     let seconds = stages.dispatch + stages.readback - before;
@@ -121,6 +120,14 @@ pub(super) fn bake(
 }
 
 impl Evaluator {
+    /// Another one like this, after its device was lost.
+    pub(super) fn reopen(&self) -> Result<Self> {
+        Ok(match self {
+            Self::Device(device) => Self::Device(Box::new(device.reopen()?)),
+            Self::Cpu => Self::Cpu,
+        })
+    }
+
     fn stream(
         &self,
         plan: &TablePlan,

@@ -1,7 +1,7 @@
 //! Records the baking of a table on a device that the caller owns.
 
-use super::compose::{Kernel, compose, validate};
-use super::stage::{Job, Stage, Stages};
+use super::compose::{Kernel, VALUE_WINDOW, compose, validate};
+use super::stage::{Job, Rows, Stage, Stages};
 use crate::axis::Variable;
 use crate::error::{Error, Result};
 use crate::models::Model;
@@ -14,7 +14,6 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// Bakes tables on a device.
 ///
@@ -213,6 +212,9 @@ impl Baker {
     ) -> Result<()> {
         let pipeline = self.pipeline(stage.kernel, stage.model, stage.channels)?;
         let layout = pipeline.get_bind_group_layout(0);
+        if let (Some(rows), [quads]) = (&stage.rows, &stage.inputs[..]) {
+            return self.value_steps(stage, &pipeline, (rows, quads), units, output, steps);
+        }
         let range =
             units.start / stage.units * stage.per_unit..units.end.div_ceil(stage.units) * stage.per_unit;
         let base = count(units.start * stage.per_unit)?;
@@ -240,6 +242,60 @@ impl Baker {
                 workgroups: count((end - first).div_ceil(WORKGROUP))?,
                 evaluations: ((end - first) * stage.cost) as u64,
             });
+        }
+        Ok(())
+    }
+
+    /// The dispatches of a stage of values: windows of rows and of quads.
+    fn value_steps(
+        &self,
+        stage: &Stage,
+        pipeline: &wgpu::ComputePipeline,
+        (rows, quads): (&Rows, &wgpu::Buffer),
+        units: &Range<usize>,
+        output: &wgpu::Buffer,
+        steps: &mut Vec<Step>,
+    ) -> Result<()> {
+        const BYTES: usize = VALUE_WINDOW * 32;
+        let rows = self.init(bytemuck::cast_slice(&rows.window(units)), wgpu::BufferUsages::UNIFORM);
+        let window = |buffer, first: usize| {
+            let size = std::num::NonZeroU64::new(BYTES as u64);
+            wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: (first * 32) as u64, size })
+        };
+        for row in (0..units.len()).step_by(VALUE_WINDOW) {
+            for quad in (0..stage.per_unit).step_by(VALUE_WINDOW) {
+                let columns = VALUE_WINDOW.min(stage.per_unit - quad);
+                let invocations = columns * VALUE_WINDOW.min(units.len() - row);
+                let job = Job {
+                    first: count(row)?,
+                    end: count(invocations)?,
+                    columns: count(columns)?,
+                    azimuths: count(stage.per_unit)?,
+                    nodes: count(quad)?,
+                    ..stage.job
+                };
+                let job = self.init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
+                let resources = [
+                    job.as_entire_binding(),
+                    window(&rows, row),
+                    window(quads, quad),
+                    output.as_entire_binding(),
+                ];
+                let entries: Vec<_> = (0..)
+                    .zip(resources)
+                    .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+                    .collect();
+                steps.push(Step {
+                    pipeline: pipeline.clone(),
+                    bind_group: self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                        label: None,
+                        layout: &pipeline.get_bind_group_layout(0),
+                        entries: &entries,
+                    }),
+                    workgroups: count(invocations.div_ceil(WORKGROUP))?,
+                    evaluations: (invocations * stage.cost) as u64,
+                });
+            }
         }
         Ok(())
     }
@@ -281,9 +337,16 @@ impl Baker {
         *self.composing.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A buffer with the given bytes.
+    /// A buffer with the given bytes. Not mapped: wgpu panics when it maps on a device that is lost.
     pub(super) fn init(&self, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
-        self.device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage })
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: contents.len() as u64,
+            usage: usage | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        self.queue.write_buffer(&buffer, 0, contents);
+        buffer
     }
 
     /// A buffer for results. wgpu clears it when it is first used; kernels write all of it.

@@ -13,6 +13,8 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 pub enum Kernel {
     /// Values over (α, θi, θe, δφ).
     Values,
+    /// The same, added to those of earlier lobes.
+    AddValues,
     /// Integrals in slopes.
     Slopes,
     /// Integrals over (θe, δφ).
@@ -34,6 +36,10 @@ macro_rules! shader {
 /// The arithmetic of every kernel.
 const PRECISION: &str = "alias real = f32;\nalias real2 = vec2<real>;\nalias real4 = vec4<real>;\n";
 
+/// Rows and quads of azimuths that one dispatch of values takes: 32 bytes each, 64 in f64, in a uniform
+/// buffer, of which every device binds 64 KiB.
+pub(super) const VALUE_WINDOW: usize = 1024;
+
 /// The WGSL of `kernel` for `model` (none: kernels that evaluate no model) and so many channels.
 pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize) -> String {
     if kernel == Kernel::Pack {
@@ -48,7 +54,10 @@ pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize) -> String
             add(name, wgsl);
         }
     }
-    if kernel == Kernel::Values {
+    if let Kernel::Values | Kernel::AddValues = kernel {
+        let constants =
+            format!("const ADD = {};\nconst WINDOW = {VALUE_WINDOW}u;\n", kernel == Kernel::AddValues);
+        add("constants", &constants);
         match channels {
             1 => add("kernel/store_1", shader!("kernel/store_1")),
             2 => add("kernel/store_2", shader!("kernel/store_2")),
@@ -56,7 +65,7 @@ pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize) -> String
         }
     }
     match kernel {
-        Kernel::Values => add("kernel/values", shader!("kernel/values")),
+        Kernel::Values | Kernel::AddValues => add("kernel/values", shader!("kernel/values")),
         Kernel::Slopes => add("kernel/slopes", shader!("kernel/slopes")),
         Kernel::Product => add("kernel/product", shader!("kernel/product")),
         Kernel::Analytic => add("kernel/analytic", shader!("kernel/analytic")),

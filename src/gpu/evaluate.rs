@@ -1,4 +1,4 @@
-//! The headless bake: the same recording, one submission a dispatch, read back while the next tile is
+//! The headless bake: the same recording, in short submissions, read back while the next tile is
 //! computed.
 
 use super::baker::{Baker, Layout};
@@ -10,6 +10,9 @@ use crate::plan::TablePlan;
 use std::ops::Range;
 use std::sync::mpsc::{self, Receiver};
 use std::time::Instant;
+
+/// What the device does in one submission, after which a bake can be stopped: as much as one dispatch may.
+const EVALUATIONS_PER_SUBMISSION: u64 = 1 << 23;
 
 /// Where a tile is computed and where the host reads it. Two of them take turns: the first touch of a
 /// buffer costs more than to compute what it holds.
@@ -94,7 +97,7 @@ impl Device {
         Ok(())
     }
 
-    /// Starts a tile; waits for all its dispatches but the last.
+    /// Starts a tile; waits for all its submissions but the last.
     #[allow(clippy::too_many_arguments)]
     fn launch(
         &self,
@@ -114,16 +117,18 @@ impl Device {
         let all: u64 = steps.iter().map(|step| step.evaluations).sum();
         let part = |evaluations: u64| share * evaluations as f64 / all.max(1) as f64;
         let mut encoder = device.create_command_encoder(&Default::default());
-        let mut left = share;
-        for (k, step) in steps.iter().enumerate() {
-            step.encode(&mut encoder);
-            if k + 1 < steps.len() {
+        let (mut recorded, mut left) = (0, share);
+        for step in &steps {
+            if recorded > 0 && recorded + step.evaluations > EVALUATIONS_PER_SUBMISSION {
                 queue.submit([encoder.finish()]);
                 self.wait(wgpu::PollType::wait_indefinitely())?;
-                tick(part(step.evaluations))?;
-                left -= part(step.evaluations);
+                tick(part(recorded))?;
+                left -= part(recorded);
+                recorded = 0;
                 encoder = device.create_command_encoder(&Default::default());
             }
+            step.encode(&mut encoder);
+            recorded += step.evaluations;
         }
         let bytes = layout.bytes(units.len()) as u64;
         encoder.copy_buffer_to_buffer(&slot.output, 0, &slot.staging, 0, bytes);

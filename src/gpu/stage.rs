@@ -1,7 +1,7 @@
 //! The work of one lobe, uploaded: f64 factors rounded to f32, as the kernels lay them out.
 
 use super::baker::{Baker, RAW_BYTES, count};
-use super::compose::Kernel;
+use super::compose::{Kernel, VALUE_WINDOW};
 use crate::error::Result;
 use crate::models::{ALPHA_MIN_INTEGRAL, Model};
 use crate::pair::{Azimuth, AzimuthF32, Pair, PairF32};
@@ -25,12 +25,33 @@ pub(super) struct Stage {
     pub channels: usize,
     pub job: Job,
     pub inputs: Vec<wgpu::Buffer>,
+    /// The rows of a table of values, which are uploaded for each tile.
+    pub rows: Option<Rows>,
     /// Results for each unit of the table (see `Layout`).
     pub per_unit: usize,
     /// Units whose results one invocation makes.
     pub units: usize,
     /// Evaluations of an invocation.
     pub cost: usize,
+}
+
+/// The rows of a table of values: every α with every pair.
+pub(super) struct Rows {
+    alphas: Vec<f64>,
+    pairs: Vec<PairF32>,
+}
+
+impl Rows {
+    /// Some of them as the kernel lays them out, in whole windows.
+    pub fn window(&self, units: &Range<usize>) -> Vec<PairF32> {
+        let row = |unit| {
+            let pair: PairF32 = self.pairs[unit % self.pairs.len()];
+            pair.with_alpha(self.alphas[unit / self.pairs.len()])
+        };
+        let mut rows: Vec<_> = units.clone().map(row).collect();
+        rows.resize(rows.len().next_multiple_of(VALUE_WINDOW), PairF32::zeroed());
+        rows
+    }
 }
 
 /// `Job` of `shaders/kernel/job.wgsl`.
@@ -55,11 +76,15 @@ impl Stages {
         match &work.kind {
             WorkKind::Values { pairs, azimuths } => Ok(Self {
                 inner: Stage {
-                    kernel: Kernel::Values,
+                    kernel: if accumulate { Kernel::AddValues } else { Kernel::Values },
                     model: Some(lobe.model),
                     channels,
-                    job: Job { columns: count(pairs.len())?, azimuths: count(azimuths.len())?, ..job },
-                    inputs: vec![baker.reals(&work.alphas), baker.pairs(pairs), baker.azimuths(azimuths)],
+                    job,
+                    inputs: vec![baker.quads(azimuths)],
+                    rows: Some(Rows {
+                        alphas: work.alphas.clone(),
+                        pairs: pairs.iter().map(PairF32::from).collect(),
+                    }),
                     per_unit: azimuths.len().div_ceil(4),
                     units: 1,
                     cost: 4,
@@ -78,6 +103,7 @@ impl Stages {
                     channels: 0,
                     job: Job { columns: count(channels)?, nodes: count(outer.len())?, ..job },
                     inputs: vec![baker.reals(outer)],
+                    rows: None,
                     per_unit: inner.count() / outer.len(),
                     units: 1,
                     cost: outer.len(),
@@ -140,6 +166,7 @@ impl Stage {
             channels: 0,
             job,
             inputs,
+            rows: None,
             per_unit: 1,
             units,
             cost: units * inner.cost(),
@@ -168,6 +195,19 @@ impl Baker {
 
     fn azimuths(&self, azimuths: &[Azimuth]) -> wgpu::Buffer {
         self.input(&azimuths.iter().map(AzimuthF32::from).collect::<Vec<_>>())
+    }
+
+    /// Azimuths by fours, sin² and then cos², in whole windows.
+    fn quads(&self, azimuths: &[Azimuth]) -> wgpu::Buffer {
+        let four = |four: &[Azimuth]| {
+            // The last one fills the last quad.
+            let of = |k: usize| &four[k.min(four.len() - 1)];
+            let at = |get: fn(&Azimuth) -> f64| [0, 1, 2, 3].map(|k| get(of(k)) as f32);
+            [at(|a| a.sin2), at(|a| a.cos2)]
+        };
+        let mut quads: Vec<_> = azimuths.chunks(4).map(four).collect();
+        quads.resize(quads.len().next_multiple_of(VALUE_WINDOW), [[0.0; 4]; 2]);
+        self.init(bytemuck::cast_slice(&quads), wgpu::BufferUsages::UNIFORM)
     }
 
     fn input<T: Pod>(&self, items: &[T]) -> wgpu::Buffer {
