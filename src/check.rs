@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::plan::{Lobe, TablePlan};
 use crate::quantity::Evaluation;
 use crate::reference::Angles;
-use crate::table::{ErrorKind, TableError, indices};
+use crate::table::{ErrorKind, TableError, Values, indices};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -44,13 +44,13 @@ pub const VALUE_FLOOR: f64 = 1e-30;
 /// `tick` is called between comparisons and stops them by an error.
 pub fn cross_check(
     table: &TablePlan,
-    values: &[f32],
+    values: &Values,
     check: Check,
     estimate: Option<f64>,
     tick: &(impl Fn(f64) -> Result<()> + Sync),
 ) -> Result<TableError> {
     let mut comparison = Comparison::new(table, check, estimate);
-    comparison.add(0..table.texels(), values, tick)?;
+    comparison.add(0..table.texels(), &|k| values.get(k), tick)?;
     Ok(comparison.finish())
 }
 
@@ -80,16 +80,19 @@ impl<'a> Comparison<'a> {
             measured_max: None,
             measured_rms: None,
             texels_checked: 0,
+            underflows: None,
+            interpolation: None,
             worst: BTreeMap::new(),
         };
         Self { table, sample, error, squares: 0.0, compared: 0 }
     }
 
-    /// Compares the texels `piece`, whose values these are. The next piece must begin where it ends.
+    /// Compares the texels `piece`, whose values `value` gives, from 0. The next piece must begin where it
+    /// ends.
     pub fn add(
         &mut self,
         piece: Range<usize>,
-        values: &[f32],
+        value: &(impl Fn(usize) -> f64 + Sync),
         tick: &(impl Fn(f64) -> Result<()> + Sync),
     ) -> Result<()> {
         let (table, floor) = (self.table, self.error.floor);
@@ -106,12 +109,12 @@ impl<'a> Comparison<'a> {
             .par_iter()
             .map(|&texel| {
                 let truth = reference(table, texel);
-                let values = &values[(texel - piece.start) * channels..][..channels];
+                let values = ((texel - piece.start) * channels..).map(value);
                 let found: Vec<_> = truth
                     .into_iter()
                     .zip(values)
-                    .map(|(truth, &value)| {
-                        let difference = (f64::from(value) - truth).abs();
+                    .map(|(truth, value)| {
+                        let difference = (value - truth).abs();
                         let difference = floor.map_or(difference, |floor| difference / truth.max(floor));
                         (if difference.is_nan() { f64::INFINITY } else { difference }, truth, value)
                     })
@@ -132,7 +135,7 @@ impl<'a> Comparison<'a> {
                     *worst =
                         coordinates.map(|(axis, k)| (axis.variable.name().into(), axis.values[k])).collect();
                     worst.insert("channel".into(), channel as f64);
-                    worst.insert("value".into(), f64::from(value));
+                    worst.insert("value".into(), value);
                     worst.insert("reference".into(), truth);
                 }
             }
@@ -186,7 +189,7 @@ fn reference_lobe(evaluation: Evaluation, lobe: &Lobe, at: &BTreeMap<Variable, f
 
 /// At least `n` different texels: every corner of the axes, where extremes meet, and steps of the
 /// golden section through the rest.
-fn sample(shape: &[usize], n: usize) -> Vec<usize> {
+pub(crate) fn sample(shape: &[usize], n: usize) -> Vec<usize> {
     let texels: usize = shape.iter().product();
     if n == 0 {
         return Vec::new();
@@ -236,7 +239,9 @@ mod tests {
         let lambert = models::find("lambert").unwrap();
         let table = TablePlan::basis("t", &quantity::RHO_DH, lambert, None, axes).unwrap();
         let mut values = vec![1.0; 40];
-        let check = |values: &[f32]| cross_check(&table, values, Check::All, None, &|_| Ok(())).unwrap();
+        let check = |values: &[f32]| {
+            cross_check(&table, &values.to_vec().into(), Check::All, None, &|_| Ok(())).unwrap()
+        };
         assert!(check(&values).measured_max.unwrap() < 1e-9);
         values[17] = 1.001;
         let error = check(&values);

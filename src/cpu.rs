@@ -14,7 +14,7 @@ use std::ops::Range;
 pub(crate) fn evaluate<E: Send>(
     table: &TablePlan,
     tick: &(impl Fn(f64) -> Result<(), E> + Sync),
-) -> Result<Vec<f32>, E> {
+) -> Result<Vec<f64>, E> {
     let channels = table.channels.len();
     let mut sums = vec![0.0; table.texels() * channels];
     let share = 1.0 / table.lobes.len() as f64;
@@ -43,7 +43,7 @@ pub(crate) fn evaluate<E: Send>(
             }
         }
     }
-    Ok(sums.into_iter().map(|x| x as f32).collect())
+    Ok(sums)
 }
 
 /// The values of some rows of a table of values at a time (a row is all azimuths of an α and a pair):
@@ -100,6 +100,11 @@ fn integrate(work: &Work, inner: &Inner, lobe: &Lobe, row: usize, k: usize) -> [
                 }
             }
         }
+        Inner::Samples(work) if alpha < ALPHA_MIN_INTEGRAL => {
+            let mu = work.mus[k / work.chunks];
+            return (work.mirror_limit)(mu).map(|f| f * work.chunk as f64);
+        }
+        Inner::Samples(work) => return work.sum(row, k, alpha),
         Inner::Product { pairs, azimuths } => {
             for azimuth in azimuths {
                 add(azimuth.weight, (lobe.model.lobe)(&pairs[k], azimuth, alpha));

@@ -21,7 +21,9 @@
 //! | [`gpu`] | composing, validating and recording the kernels that a plan needs | scenes, files |
 //! | [`mod@reference`] | the textbook's formulas in f64, adaptive quadrature | everything else |
 //! | [`check`] | a table's texels against the reference | how they were computed |
+//! | [`trade`] | every method at every cost: time and error, and the front | files, devices |
 //! | [`bake`] | the order of it all: evaluate, look, check, write | how any of it is done |
+//! | [`storage`], `interpolation`, `optimise` | what rounding and bilinear look-ups cost, and the least bytes for a tolerance | devices, files |
 //! | [`table`], [`axis`], [`quantity`] | what a table is | where it came from |
 //! | `files` | EXR, NPY, PNG, the manifest; sets written all or nothing | physics |
 //!
@@ -71,16 +73,23 @@ pub mod error;
 #[cfg(feature = "files")]
 pub mod files;
 pub mod gpu;
+mod interpolation;
 pub mod models;
+mod optimise;
 pub mod pair;
 pub mod plan;
 pub mod quadrature;
 pub mod quantity;
 pub mod reference;
+mod sampling;
 pub mod scene;
 mod slopes;
+pub mod storage;
 pub mod table;
+pub mod trade;
 mod work;
 
 pub use error::{Error, Result};
+pub use interpolation::InterpolationError;
+pub use optimise::{Choice, Layout};
 pub use wgpu;

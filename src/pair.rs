@@ -4,8 +4,6 @@
 //! of the half vector needs is a product or a sum of non-negative terms, so that the specular peak
 //! survives f32 (half vectors of unit vectors in f32 are off by 0.3 at α = 1e-3).
 
-use bytemuck::{Pod, Zeroable};
-
 /// The cosine at grazing: f diverges where both directions graze, and the half vector is 0 there.
 /// Every evaluation takes μ = max(cos θ, 2⁻²⁴).
 pub const MU_MIN: f64 = 1.0 / (1 << 24) as f64;
@@ -69,7 +67,19 @@ impl Pair {
     }
 }
 
+impl Pair {
+    /// As the shader lays it out.
+    pub(crate) fn to_array(self) -> [f64; 8] {
+        [self.hz2, self.dt2, self.ss, self.sd, self.mu_i, self.mu_e, self.bin, 0.0]
+    }
+}
+
 impl Azimuth {
+    /// As the shader lays it out.
+    pub(crate) fn to_array(self) -> [f64; 4] {
+        [self.sin2, self.cos2, self.weight, self.bin]
+    }
+
     /// The factors of δφ, rad.
     pub fn new(delta_phi: f64) -> Self {
         let (sin, cos) = (0.5 * delta_phi).sin_cos();
@@ -89,34 +99,4 @@ impl Half {
 /// θ, or the angle whose cosine is [`MU_MIN`] if it is nearer to the horizon.
 fn off_horizon(theta: f64) -> f64 {
     theta.min(MU_MIN.acos())
-}
-
-/// [`Pair`] as the shader lays it out.
-#[derive(Clone, Copy, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct PairF32([f32; 8]);
-
-/// [`Azimuth`] as the shader lays it out.
-#[derive(Clone, Copy, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct AzimuthF32([f32; 4]);
-
-impl PairF32 {
-    /// A row of values.
-    pub fn with_alpha(mut self, alpha: f64) -> Self {
-        self.0[7] = alpha as f32;
-        self
-    }
-}
-
-impl From<&Pair> for PairF32 {
-    fn from(p: &Pair) -> Self {
-        Self([p.hz2, p.dt2, p.ss, p.sd, p.mu_i, p.mu_e, p.bin, 0.0].map(|x| x as f32))
-    }
-}
-
-impl From<&Azimuth> for AzimuthF32 {
-    fn from(a: &Azimuth) -> Self {
-        Self([a.sin2, a.cos2, a.weight, a.bin].map(|x| x as f32))
-    }
 }

@@ -7,8 +7,11 @@ pub use requirements::{Basis, MaterialPlan, Plan, Selection};
 
 use crate::axis::{Axis, Variable};
 use crate::error::{Error, Result};
-use crate::models::{ALPHA_MIN_VALUE, Model};
+use crate::models::{ALPHA_MIN_VALUE, Integral, Model};
+use crate::optimise::Choice;
 use crate::quantity::{Evaluation, Quantity};
+use crate::sampling::CHUNK;
+use crate::storage::{Storage, UNORM};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -29,8 +32,12 @@ pub struct TablePlan {
     pub lobes: Vec<Lobe>,
     /// The rule of its integrals.
     pub rule: Rule,
-    /// The error it must not exceed: absolute for integrals, relative for values.
+    /// The error it must not exceed, as stored: absolute for integrals, relative for values.
     pub tolerance: f64,
+    /// The format that its values are rounded to.
+    pub storage: Storage,
+    /// What the optimiser chose: the tolerance then holds for bilinear look-ups.
+    pub bilinear: Option<Choice>,
 }
 
 /// A lobe of a table.
@@ -42,6 +49,33 @@ pub struct Lobe {
     pub roughness: Option<f64>,
     /// For each channel, the weights of the components A and B.
     pub weights: Vec<[f64; 2]>,
+}
+
+/// An arithmetic.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Precision {
+    /// Single: 24 bits.
+    F32,
+    /// Double: 53 bits.
+    F64,
+}
+
+impl Precision {
+    /// `f32` or `f64`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        }
+    }
+
+    /// Bytes of a number.
+    pub(crate) fn bytes(self) -> usize {
+        match self {
+            Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
 }
 
 /// How integrals are done.
@@ -56,13 +90,70 @@ pub enum Rule {
         /// Cells in φ ∈ [0, 2π); even, as the two halves are alike.
         phi: usize,
     },
+    /// Gauss–Legendre over the same (θ, φ).
+    Gauss {
+        /// Nodes in θ ∈ [0, π/2].
+        theta: usize,
+        /// Nodes in φ ∈ [0, 2π); even, as the two halves are alike.
+        phi: usize,
+    },
+    /// Importance sampling of the distribution of normals by Hammersley's points: what most bakers do.
+    Hammersley {
+        /// Samples a texel: up to 1024, or a multiple of it.
+        samples: usize,
+    },
+    /// Importance sampling of the visible normals by Hammersley's points.
+    Vndf {
+        /// Samples a texel: up to 1024, or a multiple of it.
+        samples: usize,
+    },
+    /// Importance sampling of the visible normals at random, each texel for itself.
+    Random {
+        /// Samples a texel: up to 1024, or a multiple of it.
+        samples: usize,
+    },
+}
+
+impl Rule {
+    /// Its name in recipes and files.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Warped => "warped",
+            Self::Grid { .. } => "grid",
+            Self::Gauss { .. } => "gauss",
+            Self::Hammersley { .. } => "hammersley",
+            Self::Vndf { .. } => "vndf",
+            Self::Random { .. } => "random",
+        }
+    }
+
+    /// Samples a texel, if it samples.
+    fn samples(&self) -> Option<usize> {
+        match *self {
+            Self::Hammersley { samples } | Self::Vndf { samples } | Self::Random { samples } => Some(samples),
+            Self::Warped | Self::Grid { .. } | Self::Gauss { .. } => None,
+        }
+    }
+
+    /// Nodes in θ and φ, if it is a product of them.
+    fn nodes(&self) -> Option<[usize; 2]> {
+        match *self {
+            Self::Grid { theta, phi } | Self::Gauss { theta, phi } => Some([theta, phi]),
+            _ => None,
+        }
+    }
 }
 
 impl fmt::Display for Rule {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Warped => f.write_str("warped"),
-            Self::Grid { theta, phi } => write!(f, "grid {theta} θ × {phi} φ"),
+            Self::Grid { theta, phi } | Self::Gauss { theta, phi } => {
+                write!(f, "{} {theta} θ × {phi} φ", self.name())
+            }
+            Self::Hammersley { samples } | Self::Vndf { samples } | Self::Random { samples } => {
+                write!(f, "{}, {samples} samples", self.name())
+            }
         }
     }
 }
@@ -86,6 +177,8 @@ impl TablePlan {
             lobes: vec![Lobe { model, roughness, weights: unit[..model.components.len()].to_vec() }],
             rule: Rule::Warped,
             tolerance: DEFAULT_TOLERANCE,
+            storage: Storage::F32,
+            bilinear: None,
         };
         plan.checked()
     }
@@ -98,6 +191,21 @@ impl TablePlan {
     /// The same table with another tolerance.
     pub fn with_tolerance(self, tolerance: f64) -> Self {
         Self { tolerance, ..self }
+    }
+
+    /// The same table in another format.
+    pub fn with_storage(self, storage: Storage) -> Self {
+        Self { storage, ..self }
+    }
+
+    /// What the rule may be off by: a tenth of the tolerance where rounding and look-ups take the rest.
+    pub(crate) fn rule_tolerance(&self) -> f64 {
+        match self.storage {
+            Storage::Unorm16 => (0.1 * self.tolerance).min(UNORM_RULE),
+            Storage::F16 => 0.1 * self.tolerance,
+            _ if self.bilinear.is_some() => 0.1 * self.tolerance,
+            _ => self.tolerance,
+        }
     }
 
     /// The plan, if it can be carried out: axes that fit the quantity and the lobes, α in range.
@@ -132,8 +240,11 @@ impl TablePlan {
                     ALPHA_MIN_VALUE.sqrt()
                 ));
             }
-            if matches!(self.rule, Rule::Grid { .. }) && low < ALPHA_MIN_VALUE {
-                return refuse(format!("the grid rule cannot see a lobe of α = {low}; use the warped rule"));
+            if self.rule.nodes().is_some() && low < ALPHA_MIN_VALUE {
+                return refuse(format!(
+                    "the {} rule cannot see a lobe of α = {low}; use the warped rule",
+                    self.rule.name()
+                ));
             }
         }
         if swept && !self.lobes.iter().any(|lobe| lobe.model.has_roughness) {
@@ -141,9 +252,17 @@ impl TablePlan {
         }
         // Counts multiply beyond any usize.
         let values = self.axes.iter().try_fold(self.channels.len(), |n, axis| n.checked_mul(axis.len()));
-        let most = if self.quantity.evaluation == Evaluation::Value { MAX_STREAMED } else { MAX_VALUES };
+        let streams = self.can_stream();
+        let most = if streams { MAX_STREAMED } else { MAX_VALUES };
         if values.is_none_or(|n| n > most) {
-            return refuse(format!("it has more than {most} values; take fewer samples"));
+            let value = self.quantity.evaluation == Evaluation::Value;
+            let more = match value && !streams {
+                true => {
+                    format!(", or store it as f32, to {VALUE_F32:.1e} or more: then it need not fit memory")
+                }
+                false => String::new(),
+            };
+            return refuse(format!("it has more than {most} values; take fewer samples{more}"));
         }
         let factors = self.factors();
         if factors > MAX_FACTORS {
@@ -152,17 +271,49 @@ impl TablePlan {
                  samples of θ or μ, or a coarser grid"
             ));
         }
-        if let Rule::Grid { theta, phi } = self.rule {
-            let hemispherical = self.quantity.evaluation == Evaluation::Hemispherical;
-            let most = if hemispherical { MAX_GRID_RHO_HH } else { MAX_GRID };
-            let fits = (1..=most).contains(&theta) && (2..=MAX_GRID).contains(&phi);
+        if let Err(why) = self.check_rule() {
+            return refuse(why);
+        }
+        Ok(self)
+    }
+
+    /// Why the rule does not fit the quantity and the lobes, if it does not.
+    fn check_rule(&self) -> Result<(), String> {
+        let mean = self.quantity.evaluation == Evaluation::Hemispherical;
+        let name = self.rule.name();
+        if let Some([theta, phi]) = self.rule.nodes() {
+            let finest = if matches!(self.rule, Rule::Gauss { .. }) { MAX_GAUSS } else { MAX_GRID };
+            let most = if mean { MAX_GRID_RHO_HH } else { finest };
+            let fits = (1..=most).contains(&theta) && (2..=finest).contains(&phi);
             if !fits || phi % 2 == 1 {
-                return refuse(format!(
-                    "a grid of {theta} × {phi}; give θ from 1 to {most}, and φ from 2 to {MAX_GRID}, even"
+                return Err(format!(
+                    "a {name} of {theta} × {phi}; give θ from 1 to {most}, and φ from 2 to {finest}, even"
                 ));
             }
         }
-        Ok(self)
+        if let Some(samples) = self.rule.samples() {
+            let most = if mean { MAX_SAMPLES_RHO_HH } else { MAX_SAMPLES };
+            if samples == 0 || samples > most || samples > CHUNK && samples % CHUNK != 0 {
+                return Err(format!(
+                    "{samples} samples; give 1 to {CHUNK}, or a multiple of it up to {most}"
+                ));
+            }
+        }
+        for Lobe { model, .. } in &self.lobes {
+            let fits = match model.integral {
+                Integral::Slopes(_) => true,
+                Integral::Smooth(_) => self.rule.samples().is_none(),
+                Integral::Delta(_) => matches!(self.rule, Rule::Warped | Rule::Grid { .. }),
+            };
+            if !fits {
+                let what = if model.is_delta() { "a delta" } else { "no microfacet lobe" };
+                return Err(format!(
+                    "{} is {what}, and nothing for the {name} rule; use the warped rule",
+                    model.name
+                ));
+            }
+        }
+        Ok(())
     }
 
     /// Factors that an evaluator holds at once: one for each pair of directions, given or of nodes.
@@ -170,7 +321,7 @@ impl TablePlan {
         /// No less than any warped rule has in one of its dimensions.
         const NODES: usize = 64;
         let count = |axis: Option<&Axis>| axis.map_or(1, Axis::len);
-        let nodes = if let Rule::Grid { theta, .. } = self.rule { theta } else { NODES };
+        let nodes = self.rule.nodes().map_or(NODES, |[theta, _]| theta);
         match self.quantity.evaluation {
             Evaluation::Value => {
                 count(self.axis(Variable::ThetaI)).saturating_mul(count(self.axis(Variable::ThetaE)))
@@ -178,6 +329,40 @@ impl TablePlan {
             Evaluation::Directional => count(self.axes.last()).saturating_mul(nodes),
             Evaluation::Hemispherical => NODES.saturating_mul(nodes),
         }
+    }
+
+    /// The least arithmetic that meets the tolerance: f32 has a floor, of some hundred roundings in an
+    /// integral and of [`VALUE_F32`] in a value.
+    pub fn precision(&self) -> Precision {
+        let floor = if self.quantity.evaluation == Evaluation::Value { VALUE_F32 } else { INTEGRAL_F32 };
+        if self.tolerance < floor { Precision::F64 } else { Precision::F32 }
+    }
+
+    /// The format that values are stored in: f64 where f32 is asked for and cannot meet the tolerance.
+    pub fn stored(&self) -> Storage {
+        match (self.storage, self.precision()) {
+            (Storage::F32, Precision::F64) => Storage::F64,
+            (storage, _) => storage,
+        }
+    }
+
+    /// Whether it can be baked and written piece by piece: values, in f32 throughout.
+    pub(crate) fn can_stream(&self) -> bool {
+        self.quantity.evaluation == Evaluation::Value
+            && self.precision() == Precision::F32
+            && self.stored() == Storage::F32
+    }
+
+    /// Refuses what is too large for one piece.
+    pub(crate) fn check_fits_memory(&self) -> Result<()> {
+        if self.texels() * self.channels.len() <= MAX_VALUES {
+            return Ok(());
+        }
+        Err(Error::input(format!(
+            "table \"{}\": it has more than {MAX_VALUES} values, too many for one piece; take fewer samples, or \
+             bake it as part of a set, which streams values in f32",
+            self.name
+        )))
     }
 
     /// Samples along each axis, slowest first.
@@ -223,13 +408,27 @@ impl TablePlan {
     }
 }
 
+/// The relative error of values in f32, in units of 2⁻²⁴: factors, α and weights are rounded once each;
+/// q of GGX's D takes 5 and is squared; G2/(4 μi μe) takes 6; Fc is the fifth power of what takes 4;
+/// products take 4. The sum bounds the worst case, B of a lobe.
+pub const VALUE_F32: f64 = 40.0 / (1 << 24) as f64;
+
+/// The least tolerance of integrals that f32 meets: roundings of some hundred terms, measured at 5e-7.
+pub const INTEGRAL_F32: f64 = 1e-6;
+
+/// The relative error of f64 values stored as f32.
+pub const STORED_F32: f64 = 1.0 / (1 << 24) as f64;
+
+/// A quarter of unorm16's step: the rule may then not lift a 1 beyond what rounds to 1.
+pub(crate) const UNORM_RULE: f64 = 0.25 / UNORM;
+
 /// The tolerance where nobody names one.
 pub const DEFAULT_TOLERANCE: f64 = 1e-4;
 
-/// The most values of a table of integrals: 1 GiB as stored, and 2 more in f64 on the CPU path.
+/// The most values of a table in one piece: 1 GiB in f32, and 2 more in f64.
 const MAX_VALUES: usize = 1 << 28;
 
-/// The most values of a table of values, which need not fit memory: 32 GiB as stored, and the device
+/// The most values of a table that streams, so need not fit memory: 32 GiB as stored, and the device
 /// counts its quads in 32 bits.
 const MAX_STREAMED: usize = 1 << 33;
 
@@ -240,6 +439,11 @@ const MAX_FACTORS: usize = 1 << 22;
 pub(crate) const MAX_GRID: usize = 16_384;
 /// The finest θ of a grid under the mean over directions, which one invocation sums as well.
 const MAX_GRID_RHO_HH: usize = 512;
+/// The finest Gauss–Legendre rule: beyond it the host takes seconds to find the nodes.
+pub(crate) const MAX_GAUSS: usize = 4096;
+/// The most samples: what one invocation sums in turn, as chunks.
+pub(crate) const MAX_SAMPLES: usize = 1 << 22;
+const MAX_SAMPLES_RHO_HH: usize = 1 << 19;
 
 impl fmt::Display for TablePlan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -252,6 +456,13 @@ impl fmt::Display for TablePlan {
         if self.quantity.evaluation != Evaluation::Value {
             write!(f, ", {}", self.rule)?;
         }
-        write!(f, ", to {:e}", self.tolerance)
+        if self.storage != Storage::F32 {
+            write!(f, ", stored as {}", self.storage.name())?;
+        }
+        write!(f, ", to {:e}", self.tolerance)?;
+        match &self.bilinear {
+            Some(choice) => write!(f, " bilinearly: {choice}"),
+            None => Ok(()),
+        }
     }
 }

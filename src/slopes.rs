@@ -34,7 +34,7 @@ impl SlopeWork {
             for &mu in *group {
                 columns.push([(1.0, counts[0]), (-1.0, counts[1])].map(|(sign, n)| {
                     let first = azimuths.len();
-                    azimuths.extend(side(mu, sign, n));
+                    azimuths.extend(side(mu, sign, n, tolerance));
                     first..azimuths.len()
                 }));
             }
@@ -82,11 +82,11 @@ fn most(mus: &[f64], alphas: &[f64], counts: impl Fn(f64, f64) -> [usize; 2]) ->
 
 /// Azimuths φ = π/2 ∓ d sinh u of ωm from ωe's, u ∈ [0, asinh(π/2d)]: the horizon turns within μ of
 /// φ = π/2. c = tan θe cos φ; t_max = c + √(c² + 1), without cancellation where c < 0.
-pub(crate) fn side(mu: f64, sign: f64, n: usize) -> impl Iterator<Item = [f64; 4]> {
-    /// Found by search: smaller wastes nodes on a turn that contributes nothing, larger misses it.
-    const D_MIN: f64 = 0.1;
+pub(crate) fn side(mu: f64, sign: f64, n: usize, tolerance: f64) -> impl Iterator<Item = [f64; 4]> {
+    // Found by search: smaller wastes nodes on a turn that contributes nothing, larger misses it.
+    let d_min = if tolerance < 0.9e-6 { 1e-3 } else { 0.1 };
     let tan = ((1.0 - mu) * (1.0 + mu)).sqrt() / mu;
-    let d = mu.max(D_MIN);
+    let d = mu.max(d_min);
     let u_max = (FRAC_PI_2 / d).asinh();
     gauss_legendre(n).into_iter().map(move |node| {
         let u = u_max * node.x;

@@ -2,8 +2,13 @@
 
 use crate::axis::Axis;
 use crate::error::{Error, Result};
+use crate::interpolation::InterpolationError;
+use crate::optimise::Choice;
+use crate::storage::Storage;
 use serde::Serialize;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::fmt::Display;
 
 /// A baked table: `quantity × axes × subject`, row-major, the channels last.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,15 +28,29 @@ pub struct Table {
     /// The channels' names: `A`, `B` of a basis, `R`, `G`, `B` of a material.
     pub channels: Vec<String>,
     /// The values, row-major over the axes, channels last.
-    pub values: Vec<f32>,
+    pub values: Values,
     /// How it was computed, in words: "warped 32 v × 2·24 φ".
     pub rule: String,
+    /// The format that the values were rounded to.
+    pub storage: Storage,
+    /// What the storage optimiser chose, where it did.
+    pub bilinear: Option<Choice>,
     /// The arithmetic: `f32` or `f64`.
     pub precision: String,
     /// How far the values are from the truth.
     pub error: TableError,
     /// Time to compute it and to read it back; neither compiling nor the check.
     pub seconds: f64,
+}
+
+/// Values in the arithmetic that made them, or in that which they were rounded to.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Values {
+    /// Single precision.
+    F32(Vec<f32>),
+    /// Double precision.
+    F64(Vec<f64>),
 }
 
 /// The error of a table against the f64 reference.
@@ -50,6 +69,11 @@ pub struct TableError {
     pub measured_rms: Option<f64>,
     /// How many texels were compared.
     pub texels_checked: usize,
+    /// Values below the normal range of half floats, where they lose relative precision.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub underflows: Option<usize>,
+    /// What look-ups between the samples cost; `None` where that was not measured.
+    pub interpolation: Option<InterpolationError>,
     /// Where the largest difference lies, axis by axis, with both values.
     pub worst: BTreeMap<String, f64>,
 }
@@ -62,6 +86,91 @@ pub enum ErrorKind {
     Absolute,
     /// |x − f| / max(f, floor)
     Relative,
+}
+
+impl Values {
+    /// How many.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::F32(values) => values.len(),
+            Self::F64(values) => values.len(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Drops them and keeps their room.
+    pub(crate) fn clear(&mut self) {
+        match self {
+            Self::F32(values) => values.clear(),
+            Self::F64(values) => values.clear(),
+        }
+    }
+
+    /// One of them; both kinds fit f64.
+    pub fn get(&self, k: usize) -> f64 {
+        match self {
+            Self::F32(values) => f64::from(values[k]),
+            Self::F64(values) => values[k],
+        }
+    }
+
+    /// All of them, in order.
+    pub fn iter(&self) -> impl Iterator<Item = f64> + Clone {
+        (0..self.len()).map(|k| self.get(k))
+    }
+
+    /// One of them in the fewest digits that tell it from its neighbours.
+    pub fn show(&self, k: usize) -> String {
+        match self {
+            Self::F32(values) => values[k].to_string(),
+            Self::F64(values) => values[k].to_string(),
+        }
+    }
+
+    /// Takes the values of `other` for every texel of so many channels where `misses` says so of the
+    /// largest difference between both. Returns the largest difference of the texels that stay.
+    pub(crate) fn take_where(&mut self, other: &Self, channels: usize, misses: impl Fn(f64) -> bool) -> f64 {
+        let mut left: f64 = 0.0;
+        for texel in 0..self.len() / channels {
+            let range = texel * channels..(texel + 1) * channels;
+            let difference = range.clone().map(|k| (self.get(k) - other.get(k)).abs()).fold(0.0, f64::max);
+            if !misses(difference) {
+                left = left.max(difference);
+                continue;
+            }
+            match (&mut *self, other) {
+                (Self::F32(to), Self::F32(from)) => to[range.clone()].copy_from_slice(&from[range]),
+                (Self::F64(to), Self::F64(from)) => to[range.clone()].copy_from_slice(&from[range]),
+                // One path makes one kind.
+                _ => {}
+            }
+        }
+        left
+    }
+
+    /// Rounded to f32, to the nearest.
+    pub fn to_f32(&self) -> Cow<'_, [f32]> {
+        match self {
+            Self::F32(values) => Cow::Borrowed(values),
+            Self::F64(values) => values.iter().map(|&v| v as f32).collect(),
+        }
+    }
+}
+
+impl From<Vec<f32>> for Values {
+    fn from(values: Vec<f32>) -> Self {
+        Self::F32(values)
+    }
+}
+
+impl From<Vec<f64>> for Values {
+    fn from(values: Vec<f64>) -> Self {
+        Self::F64(values)
+    }
 }
 
 impl Table {
@@ -86,24 +195,33 @@ impl Table {
         indices(&self.shape(), texel)
     }
 
+    /// One channel of one texel.
+    pub fn value(&self, texel: usize, channel: usize) -> f64 {
+        self.values.get(texel * self.channels.len() + channel)
+    }
+
     /// The channels of one texel.
-    pub fn texel(&self, texel: usize) -> &[f32] {
-        let n = self.channels.len();
-        &self.values[texel * n..(texel + 1) * n]
+    pub fn texel(&self, texel: usize) -> Vec<f64> {
+        (0..self.channels.len()).map(|channel| self.value(texel, channel)).collect()
     }
 
     /// Refuses a table with a value that is not finite or is negative: the device may not say so
     /// itself (WGSL lets an implementation assume that NaN does not occur), so the host looks.
     pub fn check_sane(&self) -> Result<()> {
-        self.check_sane_from(0, &self.values)
+        match &self.values {
+            Values::F32(values) => self.check_sane_from(0, values),
+            Values::F64(values) => self.check_sane_from(0, values),
+        }
     }
 
     /// The same of a part of its values, which begin at a texel.
-    pub(crate) fn check_sane_from(&self, texel: usize, values: &[f32]) -> Result<()> {
+    pub(crate) fn check_sane_from<T>(&self, texel: usize, values: &[T]) -> Result<()>
+    where
+        T: Copy + Into<f64> + Display,
+    {
         let channels = self.channels.len();
-        let Some(at) = values.iter().position(|v| !v.is_finite() || v.is_sign_negative() && *v != 0.0) else {
-            return Ok(());
-        };
+        let insane = |&v: &T| !v.into().is_finite() || v.into() < 0.0;
+        let Some(at) = values.iter().position(insane) else { return Ok(()) };
         Err(Error::Promise(format!(
             "table {}: {} at {}; a BRDF is finite and non-negative",
             self.name,

@@ -63,7 +63,7 @@ fn the_manifest_has_the_documented_keys_and_no_others() {
     assert_eq!(keys(&manifest["device"]), ["driver", "kind", "name"]);
     assert_eq!(
         keys(&manifest["stages"]),
-        ["check", "compile", "compose", "device", "dispatch", "readback", "scene", "write"]
+        ["certify", "check", "compile", "compose", "device", "dispatch", "readback", "scene", "write"]
     );
 
     let requirements = &manifest["requirements"];
@@ -104,6 +104,7 @@ fn the_manifest_has_the_documented_keys_and_no_others() {
                 "rule",
                 "seconds",
                 "sha256",
+                "storage",
                 "subject",
                 "unit",
             ]
@@ -114,13 +115,28 @@ fn the_manifest_has_the_documented_keys_and_no_others() {
         assert_eq!(keys(&table["files"]), ["exr", "npy", "png"]);
         assert_eq!(keys(&table["sha256"]), ["exr", "npy", "png"]);
         let error = &table["error"];
-        let mut expected =
-            vec!["estimate", "kind", "measured_max", "measured_rms", "texels_checked", "worst"];
+        let mut expected = vec![
+            "estimate",
+            "interpolation",
+            "kind",
+            "measured_max",
+            "measured_rms",
+            "texels_checked",
+            "worst",
+        ];
         match text(&error["kind"]) {
             "relative" => expected.insert(1, "floor"),
             kind => assert_eq!(kind, "absolute"),
         }
         assert_eq!(keys(error), expected);
+        let between = &error["interpolation"];
+        if between.is_object() {
+            assert_eq!(
+                keys(between),
+                ["certified", "domain", "kind", "max", "points", "points_checked", "rms", "worst"]
+            );
+        }
+        assert!(text(&error["kind"]) == "absolute" || between.is_null(), "f is not sampled bilinearly");
         let axes = list(&table["axes"]).iter().map(|axis| text(&axis["name"]));
         let worst: BTreeSet<_> = axes.chain(["channel", "reference", "value"]).collect();
         assert_eq!(keys(&error["worst"]), Vec::from_iter(worst));
@@ -624,7 +640,7 @@ fn interrupted_or_killed_a_bake_leaves_the_old_set() {
         let (status, err) = bake.end();
         assert_eq!(status, code, "SIG{signal}: {err}");
         if code.is_some() {
-            assert!(err.contains("interrupted; nothing on disk was changed"), "{err}");
+            assert!(err.contains("interrupted; the tables on disk are as they were"), "{err}");
             assert_eq!(snapshot(&dir), old, "SIG{signal}");
         }
         let mut left = snapshot(&dir);

@@ -7,7 +7,7 @@ use common::model;
 use gonio::axis::{Axis, Mapping, Positions, Variable};
 use gonio::gpu::{Kernel, compose, validate};
 use gonio::models::MODELS;
-use gonio::plan::{Plan, Rule, Selection, TablePlan};
+use gonio::plan::{Plan, Precision, Rule, Selection, TablePlan};
 use gonio::quantity::{BRDF, RHO_DH, SPLIT_SUM};
 use gonio::scene::{Distribution, Material, MaterialLobe, Scene, Weights};
 
@@ -34,7 +34,7 @@ fn a_lambert_scene_bakes_and_composes_no_microfacet_code() {
         assert!(table.lobes.iter().all(|lobe| lobe.model == model("lambert")), "{table}");
     }
     for kernel in [Kernel::Values, Kernel::Product] {
-        let source = compose(kernel, Some(model("lambert")), 1);
+        let source = compose(kernel, Some(model("lambert")), 1, Precision::F32);
         assert!(MICROFACET.iter().all(|function| !source.contains(function)));
         assert!(!source.contains("fn fresnel("));
     }
@@ -44,14 +44,14 @@ fn a_lambert_scene_bakes_and_composes_no_microfacet_code() {
 
 #[test]
 fn a_module_holds_one_kernel_and_its_model() {
-    let ggx = compose(Kernel::Slopes, Some(model("ggx")), 2);
+    let ggx = compose(Kernel::Slopes, Some(model("ggx")), 2, Precision::F32);
     assert!(MICROFACET.iter().all(|function| ggx.contains(function)));
     for kernel in [Kernel::Values, Kernel::Slopes, Kernel::Product, Kernel::Sum] {
-        let source = compose(kernel, (kernel != Kernel::Sum).then(|| model("ggx")), 3);
+        let source = compose(kernel, (kernel != Kernel::Sum).then(|| model("ggx")), 3, Precision::F32);
         assert_eq!(source.matches("@compute").count(), 1, "{kernel:?}");
     }
-    assert!(!compose(Kernel::Sum, None, 0).contains("fn lobe("));
-    assert!(!compose(Kernel::Analytic, Some(model("mirror")), 0).contains("fn ndf("));
+    assert!(!compose(Kernel::Sum, None, 0, Precision::F32).contains("fn lobe("));
+    assert!(!compose(Kernel::Analytic, Some(model("mirror")), 0, Precision::F32).contains("fn ndf("));
 }
 
 /// For every WebGPU device: no optional capability.
@@ -59,19 +59,21 @@ fn a_module_holds_one_kernel_and_its_model() {
 fn every_shader_is_portable() {
     for model in MODELS {
         let kernels: &[Kernel] = match model.name {
-            "ggx" => &[Kernel::Values, Kernel::Product, Kernel::Slopes],
+            "ggx" => &[Kernel::Values, Kernel::AddValues, Kernel::Product, Kernel::Slopes],
             "mirror" => &[Kernel::Product, Kernel::Analytic],
-            _ => &[Kernel::Values, Kernel::Product],
+            _ => &[Kernel::Values, Kernel::AddValues, Kernel::Product],
         };
         for &kernel in kernels {
             for channels in 1..=3 {
-                validate(&compose(kernel, Some(model), channels)).unwrap();
+                for precision in [Precision::F32, Precision::F64] {
+                    validate(&compose(kernel, Some(model), channels, precision), precision).unwrap();
+                }
             }
         }
     }
-    validate(&compose(Kernel::Sum, None, 0)).unwrap();
-    validate(&compose(Kernel::Pack, None, 0)).unwrap();
-    assert!(validate("fn main() { let x = 1u + 1.0f; }").is_err(), "the gate can fail");
+    validate(&compose(Kernel::Sum, None, 0, Precision::F32), Precision::F32).unwrap();
+    validate(&compose(Kernel::Pack, None, 0, Precision::F32), Precision::F32).unwrap();
+    assert!(validate("fn main() { let x = 1u + 1.0f; }", Precision::F32).is_err(), "the gate can fail");
 }
 
 #[test]

@@ -7,6 +7,7 @@
 #[allow(dead_code, missing_docs)]
 mod make_demo_scene;
 
+use gonio::plan::Rule;
 use gonio::scene::{Distribution, Material, Scene, SubjectRequest, Weights, read};
 use make_demo_scene::ROUGHNESS;
 use serde_json::{Value, json};
@@ -430,7 +431,10 @@ fn the_commented_recipe_is_read() {
     assert_eq!(brdf.subject, SubjectRequest::Material("gold".into()));
     assert_eq!((dfg.name.as_deref(), dfg.tolerance), (Some("dfg"), Some(1e-5)));
     assert_eq!(dfg.axes[0].range, [1e-3, 1.0]);
-    assert_eq!((plaster.grid, &plaster.axes[0].values), (Some([256, 512]), &vec![0.0, 0.5, 1.0, 1.5]));
+    assert_eq!(
+        (plaster.rule, &plaster.axes[0].values),
+        (Some(Rule::Grid { theta: 256, phi: 512 }), &vec![0.0, 0.5, 1.0, 1.5])
+    );
     assert_eq!(average.subject, SubjectRequest::Basis { model: "ggx".into(), roughness: Some(0.5) });
     assert!(brdf.place.contains("recipe.toml: line "));
 }
@@ -689,4 +693,31 @@ fn glb(root: &Value, bin: &[u8]) -> Vec<u8> {
         out.extend([&(bytes.len() as u32).to_le_bytes(), &kind[..], &bytes].concat());
     }
     out
+}
+
+#[test]
+fn recipes_name_their_rule() {
+    let table = |rule: &str| {
+        let text = format!("[[tables]]\nquantity = 'rho_hh'\nmodel = 'ggx'\nroughness = 0.5\n{rule}\n");
+        gonio::scene::parse_recipe(Path::new("r.toml"), text.as_bytes())
+    };
+    let rule = |text: &str| table(text).unwrap().tables[0].rule;
+    assert_eq!(rule(""), None);
+    assert_eq!(rule("rule = 'warped'"), Some(Rule::Warped));
+    assert_eq!(rule("grid = [8, 16]"), Some(Rule::Grid { theta: 8, phi: 16 }));
+    assert_eq!(rule("rule = { grid = [8, 16] }"), Some(Rule::Grid { theta: 8, phi: 16 }));
+    assert_eq!(rule("rule = { gauss = [32, 64] }"), Some(Rule::Gauss { theta: 32, phi: 64 }));
+    assert_eq!(rule("rule = { hammersley = 1024 }"), Some(Rule::Hammersley { samples: 1024 }));
+    assert_eq!(rule("rule = { vndf = 64 }"), Some(Rule::Vndf { samples: 64 }));
+    assert_eq!(rule("rule = { random = 64 }"), Some(Rule::Random { samples: 64 }));
+    for (bad, word) in [
+        ("rule = 'grid'", "warped"),
+        ("rule = { simpson = 8 }", "hammersley"),
+        ("rule = { vndf = 0 }", "count"),
+        ("rule = { vndf = 64, random = 64 }", "one rule"),
+        ("rule = { vndf = 64 }\ngrid = [8, 16]", "keep one"),
+    ] {
+        let why = table(bad).unwrap_err().to_string();
+        assert!(why.contains("line 5") && why.contains(word), "{bad}: {why}");
+    }
 }

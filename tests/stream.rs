@@ -9,6 +9,7 @@ use gonio::check::Check;
 use gonio::files::Format;
 use gonio::gpu::DeviceChoice;
 use gonio::plan::{Plan, Selection};
+use gonio::storage::Storage;
 use gonio::{Result, scene};
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Write};
@@ -95,6 +96,54 @@ fn streamed_files_are_those_of_the_whole_table() {
             }
         }
     }
+}
+
+/// Tiles are f32: what is computed or stored otherwise is baked whole, to its own digits.
+#[test]
+fn only_f32_is_streamed() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = r#"
+[[tables]]
+name = "precise"
+quantity = "brdf"
+model = "ggx"
+tolerance = 1e-7
+axes = { roughness = { values = [0.5] }, theta_i = 5, theta_e = 5, delta_phi = 7 }
+[[tables]]
+name = "half"
+quantity = "brdf"
+model = "lambert"
+tolerance = 1e-3
+storage = "f16"
+axes = { theta_i = 5, theta_e = 5, delta_phi = 7 }
+"#;
+    let recipe = recipe(folder.path(), text);
+    for (name, evaluator) in ["device", "cpu"].into_iter().zip(evaluators()) {
+        let baked =
+            bake_recipe(evaluator, &recipe, &folder.path().join(name), SMALL, Check::All, &Unobserved)
+                .unwrap();
+        assert_eq!(baked.tiles.all, 0);
+        assert_eq!(baked.tables[0].storage, Storage::F64);
+        assert!(baked.tables.iter().all(|table| table.values.len() == table.texels() * table.channels.len()));
+    }
+
+    let huge = |how: &str| {
+        let axes = "axes = { theta_i = 1024, theta_e = 1024, delta_phi = 512 }";
+        let text = format!("[[tables]]\nquantity = \"brdf\"\nmodel = \"lambert\"\n{how}\n{axes}\n");
+        let path = folder.path().join("huge.toml");
+        fs::write(&path, text).unwrap();
+        Plan::new(&scene::read(&path).unwrap(), &Selection::default())
+    };
+    assert!(huge("").is_ok());
+    for how in ["storage = \"f16\"", "storage = \"f64\"", "tolerance = 1e-7"] {
+        let why = huge(how).unwrap_err().to_string();
+        assert!(why.contains("268435456 values") && why.contains("store it as f32"), "{why}");
+    }
+    // A caller who wants one piece gets the remedy, not an abort.
+    let plan = huge("").unwrap().tables.remove(0);
+    let why =
+        device().bake(&plan, Check::Sample(0), &mut Stages::default(), &Unobserved).unwrap_err().to_string();
+    assert!(why.contains("too many for one piece"), "{why}");
 }
 
 /// Killed in the second table, started again: the finished tiles are not computed again, and the files are

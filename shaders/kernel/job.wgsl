@@ -2,7 +2,7 @@
 // (A, B) become channels.
 
 struct Job {
-    weights: array<vec4f, 3>, // channel c = dot(weights[c].xy, (A, B))
+    weights: array<vec4f, 3>, // channel c = dot(weights[c].xy + weights[c].zw, (A, B)): the latter is what f32 drops
     first: u32,               // first invocation of this dispatch
     end: u32,                 // one past its last
     base: u32,                // the invocation whose result is the first of the output buffer
@@ -18,5 +18,6 @@ const INV_PI: real = 0.3183098861837907;
 @group(0) @binding(0) var<uniform> job: Job;
 
 fn channel(c: u32, ab: real2) -> real {
-    return real(job.weights[c].x) * ab.x + real(job.weights[c].y) * ab.y;
+    let weight = real2(job.weights[c].xy) + real2(job.weights[c].zw);
+    return weight.x * ab.x + weight.y * ab.y;
 }

@@ -3,7 +3,7 @@
 
 @group(0) @binding(1) var<storage, read> outer: array<real>;
 @group(0) @binding(2) var<storage, read> raw: array<real2>;
-@group(0) @binding(3) var<storage, read_write> values: array<f32>;
+@group(0) @binding(3) var<storage, read_write> values: array<real>;
 
 const BLOCK = 32u;
 
@@ -23,7 +23,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     for (var c = 0u; c < job.columns; c++) {
         let at = (texel - job.base) * job.columns + c;
-        let value = f32(channel(c, sum));
+        let value = channel(c, sum);
         if job.accumulate == 1u {
             values[at] += value;
         } else {

@@ -14,9 +14,11 @@ use crate::check::{Check, cross_check};
 use crate::cpu;
 use crate::error::{Error, Result};
 use crate::gpu::{Device, DeviceChoice};
-use crate::plan::{Rule, TablePlan};
+use crate::interpolation;
+use crate::plan::{Precision, Rule, STORED_F32, TablePlan, VALUE_F32};
 use crate::quantity::Evaluation;
-use crate::table::{Table, TableError};
+use crate::storage::{Storage, Stored};
+use crate::table::{Table, TableError, Values};
 use serde::Serialize;
 use std::time::Instant;
 
@@ -47,18 +49,6 @@ pub struct Unobserved;
 
 impl Observer for Unobserved {}
 
-/// The relative error of values in f32, in units of 2⁻²⁴: factors, α and weights are rounded once each;
-/// q of GGX's D takes 5 and is squared; G2/(4 μi μe) takes 6; Fc is the fifth power of what takes 4;
-/// products take 4. The sum bounds the worst case, B of a lobe.
-pub const VALUE_F32: f64 = 40.0 / (1 << 24) as f64;
-
-/// The relative error of f64 values stored as f32.
-pub const STORED_F32: f64 = 1.0 / (1 << 24) as f64;
-
-/// The absolute error of integrals by the warped rule: 5e-7 of the rule itself, over α ∈ [0, 1] and
-/// μ ∈ [2⁻²⁴, 1], and as much of f32.
-pub const WARPED: f64 = 1e-6;
-
 /// Where the time went, in seconds.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Stages {
@@ -72,6 +62,8 @@ pub struct Stages {
     pub compile: f64,
     /// Running the kernels, or the CPU path.
     pub dispatch: f64,
+    /// Running them again by a finer rule, to certify the first.
+    pub certify: f64,
     /// Copying results back.
     pub readback: f64,
     /// Comparing with the reference.
@@ -90,14 +82,6 @@ impl Evaluator {
         Ok((device.map_or(Self::Cpu, |device| Self::Device(Box::new(device))), line))
     }
 
-    /// The arithmetic: `f32` or `f64`.
-    pub fn precision(&self) -> &'static str {
-        match self {
-            Self::Device(_) => "f32",
-            Self::Cpu => "f64",
-        }
-    }
-
     /// Evaluates a table and measures its error.
     ///
     /// The table comes back whatever its error is: see [`within_tolerance`].
@@ -112,23 +96,31 @@ impl Evaluator {
         stages: &mut Stages,
         observer: &dyn Observer,
     ) -> Result<Table> {
+        plan.check_fits_memory()?;
         observer.begin(&format!("baking {}", plan.name));
         let tick = |share| observer.advance(share);
         let before = stages.dispatch + stages.readback;
-        let values = match self {
-            Self::Device(device) => device.evaluate(plan, stages, &tick)?,
-            Self::Cpu => {
-                let start = Instant::now();
-                let values = cpu::evaluate(plan, &tick)?;
-                stages.dispatch += start.elapsed().as_secs_f64();
-                values
-            }
-        };
+        let path = self.path(plan);
+        let mut values = path.evaluate(plan, stages, &tick)?;
         let seconds = stages.dispatch + stages.readback - before;
+        let mut estimate = path.estimate(plan);
+        if check != Check::Sample(0)
+            && plan.rule == Rule::Warped
+            && plan.quantity.evaluation != Evaluation::Value
+        {
+            estimate = Some(path.certify(plan, &mut values, stages, &tick)?);
+        }
 
         observer.begin(&format!("checking {}", plan.name));
         let start = Instant::now();
-        let error = cross_check(plan, &values, check, self.estimate(plan), &tick)?;
+        let Stored { values, underflows } = plan
+            .stored()
+            .store(values, plan.quantity.error)
+            .map_err(|why| Error::Promise(format!("table {}: {why}", plan.name)))?;
+        let rounding = plan.stored().coarse_rounding(plan.quantity.error);
+        let mut error = cross_check(plan, &values, check, estimate.map(|e| e + rounding), &tick)?;
+        error.underflows = (plan.storage == Storage::F16).then_some(underflows);
+        error.interpolation = interpolation::measure(plan, &values, check)?;
         stages.check += start.elapsed().as_secs_f64();
         let table = self.table(plan, values, error, seconds);
         table.check_sane()?;
@@ -137,7 +129,8 @@ impl Evaluator {
     }
 
     /// The table of a plan, with what was found.
-    fn table(&self, plan: &TablePlan, values: Vec<f32>, error: TableError, seconds: f64) -> Table {
+    fn table(&self, plan: &TablePlan, values: Values, error: TableError, seconds: f64) -> Table {
+        let path = self.path(plan);
         Table {
             name: plan.name.clone(),
             quantity: plan.quantity.name.into(),
@@ -147,24 +140,118 @@ impl Evaluator {
             axes: plan.axes.clone(),
             channels: plan.channels.clone(),
             values,
-            rule: if plan.quantity.evaluation == Evaluation::Value {
-                "pointwise".into()
-            } else {
-                plan.rule.to_string()
-            },
-            precision: self.precision().into(),
+            rule: path.rule(plan, self),
+            storage: plan.stored(),
+            bilinear: plan.bilinear.clone(),
+            precision: path.name().into(),
             error,
             seconds,
         }
     }
 
-    /// What a rule promises before anything is measured, over all parameters; the tests of
-    /// convergence and of the extremes hold it. The grid rule promises nothing.
-    fn estimate(&self, plan: &TablePlan) -> Option<f64> {
-        if plan.quantity.evaluation == Evaluation::Value {
-            return Some(if matches!(self, Self::Cpu) { STORED_F32 } else { VALUE_F32 });
+    /// How a plan is carried out here: f64 where its tolerance asks for it, and the CPU where the device
+    /// has none. Values in f64 are the CPU's: no table of theirs is stored beyond f32 by a device.
+    fn path(&self, plan: &TablePlan) -> Path<'_> {
+        match (self, plan.precision()) {
+            (Self::Device(device), Precision::F32) => Path::Device(device, Precision::F32),
+            (Self::Device(device), Precision::F64)
+                if device.has_f64() && plan.quantity.evaluation != Evaluation::Value =>
+            {
+                Path::Device(device, Precision::F64)
+            }
+            (_, precision) => Path::Cpu(precision),
         }
-        (plan.rule == Rule::Warped).then_some(WARPED)
+    }
+}
+
+/// An evaluator and the precision of its result.
+#[derive(Clone, Copy)]
+enum Path<'a> {
+    Device(&'a Device, Precision),
+    /// Always f64; the precision is what was asked for.
+    Cpu(Precision),
+}
+
+impl Path<'_> {
+    fn evaluate(
+        self,
+        plan: &TablePlan,
+        stages: &mut Stages,
+        tick: &(impl Fn(f64) -> Result<()> + Sync),
+    ) -> Result<Values> {
+        match self {
+            Self::Device(device, precision) => device.evaluate(plan, precision, stages, tick),
+            Self::Cpu(_) => {
+                let start = Instant::now();
+                let values = cpu::evaluate(plan, tick)?;
+                stages.dispatch += start.elapsed().as_secs_f64();
+                Ok(Values::F64(values))
+            }
+        }
+    }
+
+    /// Checks a table by the rule of a tenth of its tolerance. Texels that differ by more than half the
+    /// tolerance are redone: they take the finer rule's value, which is then checked by the next.
+    /// Returns the largest difference that is left.
+    fn certify(
+        self,
+        plan: &TablePlan,
+        values: &mut Values,
+        stages: &mut Stages,
+        tick: &(impl Fn(f64) -> Result<()> + Sync),
+    ) -> Result<f64> {
+        const TRIES: i32 = 3;
+        let mut spent = Stages::default();
+        let mut left = f64::INFINITY;
+        for finer in 1..=TRIES {
+            let plan = plan.clone().with_tolerance(plan.tolerance * 0.1f64.powi(finer));
+            let second = self.evaluate(&plan, &mut spent, tick)?;
+            let before = values.clone();
+            left = values.take_where(&second, plan.channels.len(), |difference| {
+                difference > 0.5 * plan.tolerance / 0.1f64.powi(finer)
+            });
+            if *values == before {
+                break;
+            }
+        }
+        stages.compose += spent.compose;
+        stages.compile += spent.compile;
+        stages.certify += spent.dispatch + spent.readback;
+        Ok(left)
+    }
+
+    /// What is promised before anything is measured: the budget of values, the tolerance of the warped
+    /// rule. The other rules promise nothing.
+    fn estimate(self, plan: &TablePlan) -> Option<f64> {
+        if plan.quantity.evaluation != Evaluation::Value {
+            return (plan.rule == Rule::Warped).then_some(plan.tolerance);
+        }
+        Some(match self {
+            Self::Device(..) => VALUE_F32,
+            Self::Cpu(Precision::F32) => STORED_F32,
+            // sin θi − sin θe, where both graze: their half sum is rounded near π/2.
+            Self::Cpu(Precision::F64) => 1e-8,
+        })
+    }
+
+    /// The rule, and where it ran if that was not the evaluator's own place.
+    fn rule(self, plan: &TablePlan, evaluator: &Evaluator) -> String {
+        let value = plan.quantity.evaluation == Evaluation::Value;
+        let rule = if value { "pointwise".into() } else { plan.rule.to_string() };
+        match (self, evaluator) {
+            (Self::Cpu(_), Evaluator::Device(_)) => {
+                format!("{rule}, on the CPU: f32 cannot meet the tolerance")
+            }
+            _ => rule,
+        }
+    }
+
+    /// The arithmetic.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Device(_, precision) => precision.name(),
+            Self::Cpu(_) => "f64",
+        }
     }
 }
 
@@ -173,10 +260,30 @@ impl Evaluator {
 /// # Errors
 /// [`Error::Promise`] with the worst texel.
 pub fn within_tolerance(plan: &TablePlan, table: &Table) -> Result<()> {
-    let Some(measured) = table.error.measured_max.filter(|&max| max > plan.tolerance) else { return Ok(()) };
+    if plan.bilinear.is_some()
+        && let Some(between) = &table.error.interpolation
+        && let Some(max) = between.max.filter(|&max| max > plan.tolerance)
+    {
+        return Err(Error::Promise(format!(
+            "table {}: bilinear look-ups are off by {max:.2e} where {:.0e} is allowed ({:?}); allow more, or \
+             give counts in place of auto",
+            plan.name, plan.tolerance, between.worst
+        )));
+    }
+    // Measured against the reference, or between two rules: whichever is worse.
+    let certified = plan.rule == Rule::Warped && plan.quantity.evaluation != Evaluation::Value;
+    let between = table.error.estimate.filter(|_| certified);
+    let measured = table.error.measured_max.into_iter().chain(between).fold(0.0, f64::max);
+    if measured <= plan.tolerance {
+        return Ok(());
+    }
     let place: Vec<_> = table.error.worst.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let remedy = match plan.rule {
         Rule::Grid { .. } => "take a finer grid or the warped rule",
+        Rule::Gauss { .. } | Rule::Hammersley { .. } | Rule::Vndf { .. } | Rule::Random { .. } => {
+            "take more nodes or samples, or the warped rule"
+        }
+        Rule::Warped if table.storage.bytes() < Storage::F32.bytes() => "allow more, or store it as f32",
         // No table is better than the f32 that it is stored in.
         Rule::Warped if table.precision == "f32" && plan.tolerance > STORED_F32 => {
             "allow more, or bake with --device cpu, which is f64"
@@ -204,7 +311,7 @@ fn check_energy(plan: &TablePlan, table: &Table) -> Result<()> {
         .map(|lobe| lobe.weights.as_flattened().iter().copied().fold(0.0, f64::max) * lobe.model.rho_bound)
         .sum();
     for texel in 0..table.texels() {
-        let channels = table.texel(texel).iter().map(|&v| f64::from(v));
+        let channels = table.texel(texel).into_iter();
         let reflected = if together { channels.sum() } else { channels.fold(0.0, f64::max) };
         // Twice the tolerance, as A and B may both be off.
         if reflected > bound + 2.0 * plan.tolerance {

@@ -194,11 +194,11 @@ pub fn bake_set(
 fn energy_warnings(plan: &Plan, tables: &[Table]) -> Vec<String> {
     let gains =
         |table: &&Table| table.quantity == "rho_dh" && plan.materials.iter().any(|m| m.name == table.subject);
-    let largest = |table: &Table| table.values.iter().copied().fold(0.0, f32::max);
+    let largest = |table: &Table| table.values.iter().fold(0.0, f64::max);
     tables
         .iter()
         .filter(gains)
-        .filter(|table| largest(table) > 1.0 + plan.tolerance as f32)
+        .filter(|table| largest(table) > 1.0 + plan.tolerance)
         .map(|table| {
             format!(
                 "{}: reflects up to {:.4} of what it receives; its lobes are added without conserving energy, as \

@@ -7,15 +7,14 @@ use crate::cpu;
 use crate::error::{Error, Result};
 use crate::files::{self, Tiles};
 use crate::gpu::{Kernel, compose};
-use crate::plan::TablePlan;
-use crate::quantity::Evaluation;
-use crate::table::{Table, indices};
+use crate::plan::{Precision, TablePlan};
+use crate::table::{Table, Values, indices};
 use std::ops::Range;
 
 /// Which tables are baked and written piece by piece, in bounded memory. The files are the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Streaming {
-    /// Tables of values with more values than this are streamed.
+    /// Tables of values in f32 with more values than this are streamed.
     pub above: usize,
     /// Bytes of a tile; at least one row of the last axis.
     pub tile: usize,
@@ -39,8 +38,7 @@ pub struct Progress {
 impl Streaming {
     /// Whether it takes this table.
     pub(super) fn takes(&self, table: &TablePlan) -> bool {
-        let value = table.quantity.evaluation == Evaluation::Value;
-        value && table.texels() * table.channels.len() > self.above
+        table.can_stream() && table.texels() * table.channels.len() > self.above
     }
 
     /// The rows of each tile: a row is the last axis.
@@ -57,7 +55,7 @@ pub(super) fn key(table: &TablePlan, scene: &str, device: &str, streaming: &Stre
     let shaders: String = table
         .lobes
         .iter()
-        .map(|lobe| compose(Kernel::Values, Some(lobe.model), table.channels.len()))
+        .map(|lobe| compose(Kernel::Values, Some(lobe.model), table.channels.len(), Precision::F32))
         .collect();
     let version = env!("CARGO_PKG_VERSION");
     let all = format!("{version}\n{scene}\n{device}\n{streaming:?}\n{table:?}\n{shaders}");
@@ -84,9 +82,11 @@ pub(super) fn bake(
     let ranges = options.streaming.tiles(plan);
     let width = plan.axes.last().map_or(1, Axis::len);
     let row = width * plan.channels.len();
+    let estimate = evaluator.path(plan).estimate(plan);
+    let unknown = Comparison::new(plan, options.check, None).finish();
     let mut pass = Pass {
-        table: evaluator.table(plan, Vec::new(), Comparison::new(plan, options.check, None).finish(), 0.0),
-        comparison: Comparison::new(plan, options.check, evaluator.estimate(plan)),
+        table: evaluator.table(plan, Values::F32(Vec::new()), unknown, 0.0),
+        comparison: Comparison::new(plan, options.check, estimate),
         preview: Preview::new(plan),
         done: 0,
     };
@@ -115,7 +115,8 @@ pub(super) fn bake(
     let seconds = stages.dispatch + stages.readback - before;
     let error = pass.comparison.finish();
     let table = Table { error: error.clone(), seconds, ..pass.table };
-    let preview = Table { axes: pass.preview.axes(plan), values: pass.preview.values, ..table.clone() };
+    let axes = pass.preview.axes(plan);
+    let preview = Table { axes, values: Values::F32(pass.preview.values), ..table.clone() };
     Ok((table, preview))
 }
 
@@ -155,7 +156,7 @@ struct Pass<'a> {
 impl Pass<'_> {
     fn take(&mut self, texels: Range<usize>, values: &[f32]) -> Result<()> {
         self.table.check_sane_from(texels.start, values)?;
-        self.comparison.add(texels.clone(), values, &|_| Ok(()))?;
+        self.comparison.add(texels.clone(), &|k| f64::from(values[k]), &|_| Ok(()))?;
         self.preview.take(texels, values);
         self.done += 1;
         Ok(())

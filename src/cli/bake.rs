@@ -68,11 +68,11 @@ A recipe asks for tables without a scene:
   model = \"ggx\"
   axes = { mu = 64, roughness = 64 }
 
-An axis is a count, or { count, range = [a, b], positions = \"centers\" | \"nodes\", mapping = \"linear\" |
-\"sqrt\" }, or { values = [] }. The README has the rest.
+An axis is a count, or { values = [] }, or { count, range = [a, b], positions, mapping } with
+positions \"centers\" or \"nodes\" and mapping \"linear\" or \"sqrt\". The README has the rest.
 
-Exit codes: 0 success, 1 a table misses its tolerance, 2 bad input, 3 no device, 130 interrupted. Whatever
-was in DIR stays as it was unless all of it succeeds.";
+Exit codes: 0 success, 1 a table misses its tolerance, 2 bad input, 3 no device, 130 interrupted.
+Whatever was in DIR stays as it was unless all of it succeeds.";
 
 fn tolerance(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| format!("\"{text}\" is not a number"))?;
@@ -129,18 +129,19 @@ pub fn run(args: &Args) -> Result<()> {
 fn summary(say: &Say, plan: &Plan, baked: &Baked) -> Result<()> {
     let width = baked.tables.iter().map(|t| t.name.chars().count()).max().unwrap_or(0);
     say.line(&format!(
-        "{HEADING}{:width$}  {:>16}  {:>9}  {:>9}  {:>7}  {:>8}{HEADING:#}",
-        "table", "texels", "max error", "rms", "checked", "time"
+        "{HEADING}{:width$}  {:>16}  {:>9}  {:>9}  {:>9}  {:>7}  {:>8}{HEADING:#}",
+        "table", "texels", "max error", "rms", "bilinear", "checked", "time"
     ))?;
     for table in &baked.tables {
         let shape: Vec<_> = table.shape().iter().map(usize::to_string).collect();
         let shape = if shape.is_empty() { "1".into() } else { shape.join("×") };
         let number = |x: Option<f64>| x.map_or("–".into(), |x| format!("{x:.1e}"));
         say.line(&format!(
-            "{:width$}  {shape:>16}  {:>9}  {:>9}  {:>7}  {:>5.0} ms",
+            "{:width$}  {shape:>16}  {:>9}  {:>9}  {:>9}  {:>7}  {:>5.0} ms",
             table.name,
             number(table.error.measured_max),
             number(table.error.measured_rms),
+            number(table.error.interpolation.as_ref().and_then(|between| between.max)),
             table.error.texels_checked,
             1e3 * table.seconds,
         ))?;
@@ -153,6 +154,7 @@ fn summary(say: &Say, plan: &Plan, baked: &Baked) -> Result<()> {
         ms("compose", s.compose),
         ms("compile", s.compile),
         ms("dispatch", s.dispatch),
+        ms("certify", s.certify),
         ms("readback", s.readback),
         ms("check", s.check),
         ms("write", s.write),
@@ -181,6 +183,8 @@ fn plan_json(plan: &Plan) -> serde_json::Value {
                 "channels": t.channels,
                 "rule": t.rule.to_string(),
                 "tolerance": t.tolerance,
+                "storage": t.storage,
+                "bilinear": t.bilinear,
             })
         })
         .collect();

@@ -94,9 +94,8 @@ pub fn run(args: &Args) -> Result<()> {
             table.channels.iter().zip(values).map(|(c, v)| format!("{c} = {v:.8e}")).collect();
         words.join("  ")
     };
-    let values: Vec<_> = table.values.iter().map(|&v| f64::from(v)).collect();
     print(&format!("{HEADING}f({}){HEADING:#} in sr⁻¹, δφ = {delta_phi:.6} rad", plan.subject))?;
-    print(&format!("device      {}    {line}", show(&values)))?;
+    print(&format!("device      {}    {line}", show(&table.texel(0))))?;
     print(&format!("reference   {}    f64", show(&reference)))?;
     print(&format!("difference  {:.1e} relative", difference.unwrap_or(f64::NAN)))
 }

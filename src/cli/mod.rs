@@ -3,6 +3,7 @@
 mod bake;
 mod devices;
 mod eval;
+mod trade;
 mod watch;
 
 use crate::error::{Error, Result};
@@ -24,6 +25,8 @@ enum Command {
     Bake(bake::Args),
     /// Evaluate a BRDF for one pair of directions
     Eval(eval::Args),
+    /// Measure time against error: every method at every cost
+    Trade(trade::Args),
     /// List the devices that can bake
     Devices(devices::Args),
 }
@@ -32,6 +35,7 @@ const AFTER_HELP: &str = "\
 Examples:
   gonio bake scene.gltf --out tables
   gonio eval --model ggx --set roughness=0.3 --theta-i 45deg --theta-e 45deg
+  gonio trade --quantity split_sum --model ggx --out trade
   gonio devices
 
 Exit codes: 0 success, 1 a promise is not met, 2 bad input, 3 no device, 70 internal error, 130 interrupted";
@@ -48,6 +52,7 @@ pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Bake(args) => bake::run(&args),
         Command::Eval(args) => eval::run(&args),
+        Command::Trade(args) => trade::run(&args),
         Command::Devices(args) => devices::run(&args),
     };
     match result {

@@ -2,6 +2,8 @@
 
 use super::set::Files;
 use crate::axis::{Axis, Mapping, Positions};
+use crate::optimise::Choice;
+use crate::storage::{Storage, UNORM};
 use crate::table::{Table, TableError};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -20,6 +22,12 @@ pub struct TableEntry<'a> {
     files: Files,
     rule: &'a str,
     precision: &'a str,
+    storage: Storage,
+    /// What an integer of an unorm16 NPY file is multiplied with.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    scale: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bilinear: Option<&'a Choice>,
     error: &'a TableError,
     seconds: f64,
 }
@@ -38,6 +46,9 @@ impl<'a> TableEntry<'a> {
             files,
             rule: &table.rule,
             precision: &table.precision,
+            storage: table.storage,
+            scale: (table.storage == Storage::Unorm16).then_some(1.0 / UNORM),
+            bilinear: table.bilinear.as_ref(),
             error: &table.error,
             seconds: table.seconds,
         }

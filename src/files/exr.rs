@@ -1,7 +1,8 @@
-//! OpenEXR files: 32-bit float, named channels, uncompressed scanlines, all else as attributes.
+//! OpenEXR files: 32-bit float, or 16-bit where the table is stored so, named channels, uncompressed scanlines, all else as attributes.
 
 use super::{Provenance, entry};
 use crate::error::{Error, Result};
+use crate::storage::Storage;
 use crate::table::Table;
 use ::exr::image::write::layers::WritableLayers;
 use ::exr::meta::header::Header;
@@ -10,6 +11,7 @@ use ::exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, Layer, LayerAttributes, Text,
     WritableImage,
 };
+use half::f16;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -17,10 +19,14 @@ use std::io::Cursor;
 /// The bytes of the file.
 pub(super) fn encode(table: &Table, provenance: &Provenance) -> Result<Vec<u8>> {
     let fault = |why: &dyn std::fmt::Display| Error::Internal(format!("table {}: EXR: {why}", table.name));
-    let stride = table.channels.len();
+    let (stride, values) = (table.channels.len(), table.values.to_f32());
     let channels = table.channels.iter().enumerate().map(|(c, name)| {
-        let samples = table.values.iter().skip(c).step_by(stride).copied().collect();
-        AnyChannel::new(text(name), FlatSamples::F32(samples))
+        let samples = values.iter().skip(c).step_by(stride).copied();
+        let samples = match table.storage {
+            Storage::F16 => FlatSamples::F16(samples.map(f16::from_f32).collect()),
+            _ => FlatSamples::F32(samples.collect()),
+        };
+        AnyChannel::new(text(name), samples)
     });
 
     let channels = AnyChannels::sort(channels.collect());
@@ -104,6 +110,9 @@ fn describe(table: &Table) -> serde_json::Result<BTreeMap<String, String>> {
         ("channels", json(&table.channels)?),
         ("rule", table.rule.clone()),
         ("precision", table.precision.clone()),
+        // OpenEXR has neither doubles nor integers of 16 bits: those are f32 here, to the nearest.
+        ("storage", table.storage.name().into()),
+        ("bilinear", json(&table.bilinear)?),
         ("error", json(&table.error)?),
         ("version", env!("CARGO_PKG_VERSION").into()),
     ];

@@ -11,12 +11,14 @@ mod png;
 mod scale;
 mod set;
 mod stream;
+mod tradeoff;
 
 pub use entry::TableEntry;
 pub(crate) use manifest::hash;
 pub use manifest::{read_manifest, sha256, verify};
 pub use set::{Files, TableSet};
 pub(crate) use stream::Tiles;
+pub(crate) use tradeoff::draw as draw_trade;
 
 use crate::error::{Error, Result};
 use crate::table::Table;
@@ -32,10 +34,10 @@ pub type Provenance = BTreeMap<String, String>;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Format {
-    /// OpenEXR: 32-bit float, named channels, uncompressed scanlines; width is the last axis, height the
+    /// OpenEXR: 32-bit float (16-bit for tables in f16), named channels, uncompressed scanlines; width is the last axis, height the
     /// product of the others, row 0 the first value; axes and provenance as attributes.
     Exr,
-    /// NumPy: little-endian float32, shape = axes in order, channel last.
+    /// NumPy: little-endian float32, float64, float16 or uint16 as the table is stored, shape = axes in order, channel last.
     Npy,
     /// A preview to look at, not to read values from.
     Png,

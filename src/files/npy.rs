@@ -1,34 +1,59 @@
-//! NumPy files: shape = axes in order, channel last, little-endian float32, C order.
+//! NumPy files: shape = axes in order, channel last, little-endian float32 or
+//! float64, C order.
 
 use crate::error::{Error, Result};
-use crate::table::Table;
-use npyz::{DType, NpyWriter, WriteOptions, WriterBuilder};
+use crate::storage::{Storage, UNORM};
+use crate::table::{Table, Values};
+use half::f16;
+use npyz::{DType, NpyWriter, Serialize, WriteOptions, WriterBuilder};
 
 /// The bytes of the file.
 pub(super) fn encode(table: &Table) -> Result<Vec<u8>> {
     write(table).map_err(|error| Error::Internal(format!("table {}: NPY: {error}", table.name)))
 }
 
-/// The file up to its first value.
+/// The file up to its first value, for a table in f32 whose values come later.
 pub(super) fn head(table: &Table) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let fault = |error| Error::Internal(format!("table {}: NPY: {error}", table.name));
-    drop(begin(table, &mut bytes).map_err(fault)?);
+    drop(begin::<f32>("<f4", &shape(table), &mut bytes).map_err(fault)?);
     Ok(bytes)
 }
 
 fn write(table: &Table) -> std::io::Result<Vec<u8>> {
+    let shape = shape(table);
+    // Little-endian on every machine, so that the same table gives the same bytes.
+    match (&table.values, table.storage) {
+        (values, Storage::F16) => array("<f2", &shape, values.iter().map(f16::from_f64)),
+        // Stored values are k/65535 to within f32: rounding gives k back.
+        (values, Storage::Unorm16) => array("<u2", &shape, values.iter().map(|v| (v * UNORM).round() as u16)),
+        (Values::F32(values), _) => array("<f4", &shape, values.iter().copied()),
+        (Values::F64(values), _) => array("<f8", &shape, values.iter().copied()),
+    }
+}
+
+fn array<T: Serialize>(
+    dtype: &str,
+    shape: &[u64],
+    values: impl Iterator<Item = T>,
+) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    let mut writer = begin(table, &mut bytes)?;
-    writer.extend(table.values.iter().copied())?;
+    let mut writer = begin(dtype, shape, &mut bytes)?;
+    writer.extend(values)?;
     writer.finish()?;
     Ok(bytes)
 }
 
-fn begin<'a>(table: &Table, bytes: &'a mut Vec<u8>) -> std::io::Result<NpyWriter<f32, &'a mut Vec<u8>>> {
+fn begin<'a, T: Serialize>(
+    dtype: &str,
+    shape: &[u64],
+    bytes: &'a mut Vec<u8>,
+) -> std::io::Result<NpyWriter<T, &'a mut Vec<u8>>> {
+    let dtype = DType::Plain(dtype.parse().map_err(std::io::Error::other)?);
+    WriteOptions::new().dtype(dtype).shape(shape).writer(bytes).begin_nd()
+}
+
+fn shape(table: &Table) -> Vec<u64> {
     let shape = table.axes.iter().map(|axis| axis.len()).chain([table.channels.len()]);
-    let shape: Vec<u64> = shape.map(|n| n as u64).collect();
-    // Little-endian on every machine, so that the same table gives the same bytes.
-    let dtype = DType::Plain("<f4".parse().map_err(std::io::Error::other)?);
-    WriteOptions::new().dtype(dtype).shape(&shape).writer(bytes).begin_nd()
+    shape.map(|n| n as u64).collect()
 }

@@ -42,14 +42,14 @@ impl Slice<'_> {
             }
         };
         let axes = self.table.axes.iter().enumerate();
-        let texel = self.table.texel(axes.fold(0, |flat, (k, axis)| flat * axis.len() + index(k)));
-        match (self.shown, texel) {
-            (Shown::Channel(c), _) => texel[c].into(),
+        let texel = axes.fold(0, |flat, (k, axis)| flat * axis.len() + index(k));
+        match self.shown {
+            Shown::Channel(c) => self.table.value(texel, c),
             // Rec. ITU-R BT.709-6, item 3.2
-            (Shown::Luminance, &[r, g, b]) => {
-                0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)
+            Shown::Luminance => {
+                let rgb = [0.2126, 0.7152, 0.0722].into_iter().enumerate();
+                rgb.map(|(c, weight)| weight * self.table.value(texel, c)).sum()
             }
-            (Shown::Luminance, _) => f64::NAN,
         }
     }
 

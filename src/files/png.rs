@@ -29,11 +29,11 @@ const MOST_CHANNELS: usize = 6;
 
 /// A table of one texel.
 fn numbers(table: &Table) -> Result<Vec<u8>> {
-    let shown = table.channels.iter().zip(&table.values).take(24);
+    let shown = table.channels.iter().take(24);
     let mut canvas = Canvas::new(820, HEADER as usize + 32 * shown.len() + 24)?;
     header(&mut canvas, table, &[]);
-    for (k, (channel, value)) in shown.enumerate() {
-        let line = format!("{channel} = {value} {}", unit(table));
+    for (k, channel) in shown.enumerate() {
+        let line = format!("{channel} = {} {}", table.values.show(k), unit(table));
         canvas.text(&line, (24.0, HEADER + 16.0 + 32.0 * k as f32), 22.0, Align::Left, BLACK);
     }
     canvas.into_png()
@@ -45,7 +45,7 @@ fn lines(table: &Table, x: usize) -> Result<Vec<u8>> {
     let mut canvas = Canvas::new(1100, (frame.y + frame.h + BELOW) as usize)?;
     let axis = &table.axes[x];
     let scale_x = Scale::of_axis(axis);
-    let values = table.values.iter().copied().map(f64::from);
+    let values = table.values.iter();
     let scale_y = Scale::of_values(values, is_density(table)).with_margin();
     let notes = if scale_y.kind == Kind::Log { vec!["logarithmic".to_owned()] } else { vec![] };
     header(&mut canvas, table, &notes);
@@ -58,7 +58,7 @@ fn lines(table: &Table, x: usize) -> Result<Vec<u8>> {
     for (c, channel) in table.channels.iter().enumerate() {
         let color = line_color(channel, c);
         let at = |texel: usize| {
-            let v = scale_y.at(table.texel(texel)[c].into()).clamp(0.0, 1.0) as f32;
+            let v = scale_y.at(table.value(texel, c)).clamp(0.0, 1.0) as f32;
             (frame.x + frame.w * scale_x.at(axis.values[texel]) as f32, frame.y + frame.h * (1.0 - v))
         };
         let points: Vec<_> = (0..axis.len()).map(at).collect();

@@ -5,9 +5,10 @@ use super::stage::{Job, Rows, Stage, Stages};
 use crate::axis::Variable;
 use crate::error::{Error, Result};
 use crate::models::Model;
-use crate::plan::TablePlan;
+use crate::plan::{Precision, TablePlan};
 use crate::quantity::Evaluation;
 use crate::slopes::TILE_ALPHAS;
+use crate::table::Values;
 use crate::work::Work;
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -25,7 +26,7 @@ pub struct Baker {
     composing: Mutex<f64>,
 }
 
-type PipelineKey = (Kernel, Option<&'static str>, usize);
+type PipelineKey = (Kernel, Option<&'static str>, usize, Precision);
 
 /// A table on the device: `height` rows of `width` texels of `channels` floats.
 #[derive(Debug, Clone)]
@@ -73,11 +74,13 @@ pub(super) struct Layout {
     pub texels: usize,
     pub padded: usize,
     pub channels: usize,
+    /// Of the result: values are f32 however they are computed.
+    pub precision: Precision,
 }
 
 /// What a dispatch may cost: 8 million evaluations stay below 100 ms on two cores of software
 /// Vulkan, at 100 million a second.
-const EVALUATIONS_PER_DISPATCH: usize = 1 << 23;
+pub(super) const EVALUATIONS_PER_DISPATCH: usize = 1 << 23;
 /// 64 a workgroup, and at most 65,535 workgroups.
 const INVOCATIONS_PER_DISPATCH: usize = 1 << 21;
 /// Bytes of a tile's result, and of the raw integrals behind it.
@@ -85,20 +88,52 @@ const TILE_BYTES: usize = 1 << 25;
 const WORKGROUP: usize = 64;
 
 impl Layout {
-    pub fn new(table: &TablePlan) -> Self {
+    pub fn new(table: &TablePlan, precision: Precision) -> Self {
         let channels = table.channels.len();
         if !is_value(table) {
             let units = table.axis(Variable::Roughness).map_or(1, |axis| axis.len());
             let texels = table.texels() / units;
-            return Self { units, texels, padded: texels, channels };
+            return Self { units, texels, padded: texels, channels, precision };
         }
         let texels = table.axes.last().map_or(1, |axis| axis.len());
-        Self { units: table.texels() / texels, texels, padded: texels.next_multiple_of(4), channels }
+        Self {
+            units: table.texels() / texels,
+            texels,
+            padded: texels.next_multiple_of(4),
+            channels,
+            precision: Precision::F32,
+        }
     }
 
     /// Bytes of so many units.
     pub fn bytes(&self, units: usize) -> usize {
-        units * self.padded * self.channels * 4
+        units * self.padded * self.channels * self.precision.bytes()
+    }
+
+    /// No values yet, of the result's kind, with room for so many units.
+    pub fn values(&self, units: usize) -> Values {
+        let room = units * self.texels * self.channels;
+        match self.precision {
+            Precision::F32 => Values::F32(Vec::with_capacity(room)),
+            Precision::F64 => Values::F64(Vec::with_capacity(room)),
+        }
+    }
+
+    /// Appends the values that a device's bytes hold, without their padding.
+    pub fn append(&self, bytes: &[u8], values: &mut Values) {
+        let number = self.channels * self.precision.bytes();
+        for row in bytes.chunks_exact(self.padded * number) {
+            let row = &row[..self.texels * number];
+            // Number by number: bytes need not be aligned.
+            match values {
+                Values::F32(values) => {
+                    values.extend(row.as_chunks().0.iter().map(|&bytes| f32::from_le_bytes(bytes)));
+                }
+                Values::F64(values) => {
+                    values.extend(row.as_chunks().0.iter().map(|&bytes| f64::from_le_bytes(bytes)));
+                }
+            }
+        }
     }
 
     /// The ranges of units that fit a tile each, by size alone: results must not depend on speed.
@@ -138,8 +173,8 @@ impl Baker {
     /// # Errors
     /// When the table does not fit one binding of the device.
     pub fn prepare(&self, table: &TablePlan) -> Result<Prepared> {
-        let layout = Layout::new(table);
-        let stages = self.stages(table)?;
+        let layout = Layout::new(table, Precision::F32);
+        let stages = self.stages(table, Precision::F32)?;
         let raw = stages.iter().map(Stages::raw_bytes_per_unit).max().unwrap_or(0) * layout.units;
         let bytes = layout.bytes(layout.units).max(raw);
         let limits = self.device.limits();
@@ -164,12 +199,12 @@ impl Baker {
     }
 
     /// The work of every lobe of a table, uploaded.
-    pub(super) fn stages(&self, table: &TablePlan) -> Result<Vec<Stages>> {
+    pub(super) fn stages(&self, table: &TablePlan, precision: Precision) -> Result<Vec<Stages>> {
         table
             .lobes
             .iter()
             .enumerate()
-            .map(|(k, lobe)| Stages::new(self, lobe, &Work::new(table, lobe), k > 0))
+            .map(|(k, lobe)| Stages::new(self, lobe, &Work::new(table, lobe), k > 0, precision))
             .collect()
     }
 
@@ -192,7 +227,7 @@ impl Baker {
             match sum {
                 None => self.steps(inner, &[], &units, buffer, &mut steps)?,
                 Some(sum) => {
-                    let raw = self.output(units.len() * inner.per_unit * RAW_BYTES);
+                    let raw = self.output(units.len() * inner.per_unit * 2 * inner.precision.bytes());
                     self.steps(inner, &[], &units, &raw, &mut steps)?;
                     self.steps(sum, &[&raw], &units, buffer, &mut steps)?;
                 }
@@ -210,7 +245,7 @@ impl Baker {
         output: &wgpu::Buffer,
         steps: &mut Vec<Step>,
     ) -> Result<()> {
-        let pipeline = self.pipeline(stage.kernel, stage.model, stage.channels)?;
+        let pipeline = self.pipeline(stage.kernel, stage.model, stage.channels, stage.precision)?;
         let layout = pipeline.get_bind_group_layout(0);
         if let (Some(rows), [quads]) = (&stage.rows, &stage.inputs[..]) {
             return self.value_steps(stage, &pipeline, (rows, quads), units, output, steps);
@@ -306,15 +341,16 @@ impl Baker {
         kernel: Kernel,
         model: Option<&'static Model>,
         channels: usize,
+        precision: Precision,
     ) -> Result<wgpu::ComputePipeline> {
-        let key = (kernel, model.map(|m| m.name), channels);
+        let key = (kernel, model.map(|m| m.name), channels, precision);
         let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(pipeline) = pipelines.get(&key) {
             return Ok(pipeline.clone());
         }
         let label = format!("gonio {kernel:?} {}", key.1.unwrap_or_default());
         let start = Instant::now();
-        let composed = validate(&compose(kernel, model, channels))?;
+        let composed = validate(&compose(kernel, model, channels, precision), precision)?;
         *self.composing.lock().unwrap_or_else(PoisonError::into_inner) += start.elapsed().as_secs_f64();
         let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(&label),
@@ -363,9 +399,6 @@ impl Baker {
 fn is_value(table: &TablePlan) -> bool {
     table.quantity.evaluation == Evaluation::Value
 }
-
-/// Bytes of one raw integral, (A, B).
-pub(super) const RAW_BYTES: usize = 8;
 
 /// A count as the device takes it.
 pub(super) fn count(n: usize) -> Result<u32> {

@@ -5,7 +5,8 @@
 //! no switch over models is left for the device to run.
 
 use crate::error::{Error, Result};
-use crate::models::{Model, Part};
+use crate::models::{Integral, Model, Part};
+use crate::plan::Precision;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// A kernel: one entry point.
@@ -19,12 +20,22 @@ pub enum Kernel {
     Slopes,
     /// Integrals over (θe, δφ).
     Product,
+    /// Integrals by sampling the distribution of normals.
+    Ndf,
+    /// Integrals by sampling the visible normals.
+    Vndf,
+    /// The same, at random.
+    Random,
     /// Integrals in closed form.
     Analytic,
     /// The outer sums, into channels.
     Sum,
     /// Texels of a texture.
     Pack,
+    /// Nothing but stores.
+    Fill,
+    /// Nothing but arithmetic.
+    MultiplyAdd,
 }
 
 macro_rules! shader {
@@ -33,19 +44,21 @@ macro_rules! shader {
     };
 }
 
-/// The arithmetic of every kernel.
-const PRECISION: &str = "alias real = f32;\nalias real2 = vec2<real>;\nalias real4 = vec4<real>;\n";
-
-/// Rows and quads of azimuths that one dispatch of values takes: 32 bytes each, 64 in f64, in a uniform
-/// buffer, of which every device binds 64 KiB.
+/// Rows and quads of azimuths that one dispatch of values takes: 32 bytes each in a uniform buffer, of which
+/// every device binds 64 KiB.
 pub(super) const VALUE_WINDOW: usize = 1024;
 
 /// The WGSL of `kernel` for `model` (none: kernels that evaluate no model) and so many channels.
-pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize) -> String {
-    if kernel == Kernel::Pack {
-        return shader!("kernel/pack").into();
+pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize, precision: Precision) -> String {
+    match kernel {
+        Kernel::Pack => return shader!("kernel/pack").into(),
+        Kernel::Fill => return shader!("probe/fill").into(),
+        Kernel::MultiplyAdd => return shader!("probe/multiply_add").into(),
+        _ => {}
     }
-    let mut source = String::from(PRECISION);
+    // One source for both: no kernel calls a transcendental built-in, which f64 lacks.
+    let real = precision.name();
+    let mut source = format!("alias real = {real};\nalias real2 = vec2<real>;\nalias real4 = vec4<real>;\n");
     let mut add = |name: &str, wgsl: &str| source.push_str(&format!("\n// ---- {name}\n{wgsl}"));
     add("kernel/job", shader!("kernel/job"));
     if let Some(model) = model {
@@ -64,24 +77,47 @@ pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize) -> String
             _ => add("kernel/store_3", shader!("kernel/store_3")),
         }
     }
+    if let (
+        Kernel::Ndf | Kernel::Vndf | Kernel::Random,
+        Some(Model { integral: Integral::Slopes(slopes), .. }),
+    ) = (kernel, model)
+    {
+        let Part { name, wgsl } = slopes.sampling.part;
+        add(name, wgsl);
+        add("kernel/sampling", shader!("kernel/sampling"));
+    }
     match kernel {
+        Kernel::Ndf => {
+            add("sampling/ndf", shader!("sampling/ndf"));
+            add("sampling/tabulated", shader!("sampling/tabulated"));
+        }
+        Kernel::Vndf => {
+            add("sampling/vndf", shader!("sampling/vndf"));
+            add("sampling/tabulated", shader!("sampling/tabulated"));
+        }
+        Kernel::Random => {
+            add("sampling/vndf", shader!("sampling/vndf"));
+            add("sampling/random", shader!("sampling/random"));
+        }
         Kernel::Values | Kernel::AddValues => add("kernel/values", shader!("kernel/values")),
         Kernel::Slopes => add("kernel/slopes", shader!("kernel/slopes")),
         Kernel::Product => add("kernel/product", shader!("kernel/product")),
         Kernel::Analytic => add("kernel/analytic", shader!("kernel/analytic")),
         Kernel::Sum => add("kernel/sum", shader!("kernel/sum")),
-        Kernel::Pack => {}
+        Kernel::Pack | Kernel::Fill | Kernel::MultiplyAdd => {}
     }
     source
 }
 
-/// Parses and validates a composed shader for what every WebGPU device has, before any device sees
-/// it.
-pub fn validate(source: &str) -> Result<naga::Module> {
+/// Parses and validates a composed shader before any device sees it: for what every WebGPU device has,
+/// and f64 where that is the precision.
+pub fn validate(source: &str, precision: Precision) -> Result<naga::Module> {
     let fault = |what: String| Error::Internal(format!("a composed shader is not valid WGSL: {what}"));
     let module = naga::front::wgsl::parse_str(source).map_err(|e| fault(e.emit_to_string(source)))?;
     // pack2x16float is core WGSL; naga counts it because old GLES lacks it.
-    Validator::new(ValidationFlags::all(), Capabilities::SHADER_FLOAT16_IN_FLOAT32)
+    let mut capabilities = Capabilities::SHADER_FLOAT16_IN_FLOAT32;
+    capabilities.set(Capabilities::FLOAT64, precision == Precision::F64);
+    Validator::new(ValidationFlags::all(), capabilities)
         .validate(&module)
         .map_err(|e| fault(e.emit_to_string(source)))?;
     Ok(module)

@@ -92,6 +92,7 @@ impl Adapter {
         };
         let request = self.adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("gonio"),
+            required_features: self.adapter.features() & wgpu::Features::SHADER_F64,
             required_limits: limits,
             ..Default::default()
         });
@@ -188,6 +189,11 @@ impl Device {
     /// The driver and its version.
     pub fn driver(&self) -> String {
         driver(&self.info)
+    }
+
+    /// Whether its kernels can run in f64.
+    pub fn has_f64(&self) -> bool {
+        self.baker.device.features().contains(wgpu::Features::SHADER_F64)
     }
 
     /// The baker on this device.

@@ -1,34 +1,34 @@
 //! The headless bake: the same recording, in short submissions, read back while the next tile is
 //! computed.
 
-use super::baker::{Baker, Layout};
+use super::baker::{Baker, EVALUATIONS_PER_DISPATCH, Layout, Tile};
 use super::device::Device;
 use super::stage::Stages as Work;
 use crate::bake::Stages;
 use crate::error::{Error, Result};
-use crate::plan::TablePlan;
+use crate::plan::{Precision, TablePlan};
+use crate::table::Values;
 use std::ops::Range;
 use std::sync::mpsc::{self, Receiver};
 use std::time::Instant;
 
 /// What the device does in one submission, after which a bake can be stopped: as much as one dispatch may.
-const EVALUATIONS_PER_SUBMISSION: u64 = 1 << 23;
+const EVALUATIONS_PER_SUBMISSION: u64 = EVALUATIONS_PER_DISPATCH as u64;
 
 /// Where a tile is computed and where the host reads it. Two of them take turns: the first touch of a
 /// buffer costs more than to compute what it holds.
 struct Slot {
     output: wgpu::Buffer,
     staging: wgpu::Buffer,
-    /// The tile on its way, if there is one.
-    flight: Option<Flight>,
+    /// The tile on its way, if there is one, and the share of the table's work that nobody waited for yet.
+    flight: Option<(Flight, f64)>,
 }
 
+/// A result on its way to the host.
 struct Flight {
     last: wgpu::SubmissionIndex,
     mapped: Receiver<Result<(), wgpu::BufferAsyncError>>,
     bytes: u64,
-    /// The share of the table's work that nobody waited for yet.
-    share: f64,
 }
 
 impl Device {
@@ -37,19 +37,18 @@ impl Device {
     pub(crate) fn evaluate(
         &self,
         table: &TablePlan,
+        precision: Precision,
         times: &mut Stages,
         tick: &(impl Fn(f64) -> Result<()> + Sync),
-    ) -> Result<Vec<f32>> {
-        let mut values = Vec::with_capacity(table.texels() * table.channels.len());
-        self.tiles(table, None, times, tick, &mut |_, tile| {
-            values.extend_from_slice(tile);
-            Ok(())
-        })?;
+    ) -> Result<Values> {
+        let layout = Layout::new(table, precision);
+        let mut values = layout.values(layout.units);
+        self.tiles(table, &layout, None, times, tick, &mut values, &mut |_, _| Ok(()))?;
         Ok(values)
     }
 
-    /// The values of some rows of a table of values at a time (a row is all azimuths of an α and a pair):
-    /// `sink` gets each of `tiles` in order, while the device computes the next.
+    /// The values of some rows of a table of values at a time, in f32 (a row is all azimuths of an α and a
+    /// pair): `sink` gets each of `tiles` in order, while the device computes the next.
     pub(crate) fn stream(
         &self,
         table: &TablePlan,
@@ -57,37 +56,51 @@ impl Device {
         times: &mut Stages,
         sink: &mut dyn FnMut(usize, &[f32]) -> Result<()>,
     ) -> Result<()> {
-        self.tiles(table, Some(tiles), times, &|_| Ok(()), sink)
+        let layout = Layout::new(table, Precision::F32);
+        let mut values = layout.values(0);
+        self.tiles(table, &layout, Some(tiles), times, &|_| Ok(()), &mut values, &mut |k, values| {
+            sink(k, &values.to_f32())?;
+            values.clear();
+            Ok(())
+        })
     }
 
+    /// Appends the values of tile after tile to `values`; `sink` looks at them after each, and may take them.
+    #[allow(clippy::too_many_arguments)]
     fn tiles(
         &self,
         table: &TablePlan,
+        layout: &Layout,
         tiles: Option<&[Range<usize>]>,
         times: &mut Stages,
         tick: &impl Fn(f64) -> Result<()>,
-        sink: &mut dyn FnMut(usize, &[f32]) -> Result<()>,
+        values: &mut Values,
+        sink: &mut dyn FnMut(usize, &mut Values) -> Result<()>,
     ) -> Result<()> {
         let start = Instant::now();
         let composed = self.baker.compose_seconds();
-        let layout = Layout::new(table);
-        let stages = self.baker.stages(table)?;
+        let stages = self.baker.stages(table, layout.precision)?;
         let tiles = tiles.map_or_else(|| layout.tiles(&stages), <[_]>::to_vec);
-        let largest = layout.bytes(tiles.iter().map(Range::len).max().unwrap_or(0)) as u64;
+        let largest = layout.bytes(tiles.iter().map(Range::len).max().unwrap_or(0));
         let mut slots: Vec<_> = tiles.iter().take(2).map(|_| self.slot(largest)).collect();
         times.compile += start.elapsed().as_secs_f64();
 
-        let mut values = Vec::new();
         for k in 0..=tiles.len() {
             if let Some(units) = tiles.get(k) {
                 let share = units.len() as f64 / layout.units as f64;
-                self.launch(&mut slots[k % 2], &layout, &stages, units, share, times, tick)?;
+                self.launch(&mut slots[k % 2], layout, &stages, units, share, times, tick)?;
             }
             let landing = k.checked_sub(1).and_then(|last| Some((last, slots.get_mut(last % 2)?)));
-            if let Some((last, slot)) = landing {
-                values.clear();
-                let share = self.land(slot, &layout, times, &mut values)?;
-                sink(last, &values)?;
+            if let Some((last, Slot { staging, flight, .. })) = landing
+                && let Some((flight, share)) = flight.take()
+            {
+                let start = Instant::now();
+                self.arrive(&flight)?;
+                times.dispatch += start.elapsed().as_secs_f64();
+                let start = Instant::now();
+                self.land(staging, flight, layout, values)?;
+                times.readback += start.elapsed().as_secs_f64();
+                sink(last, values)?;
                 tick(share)?;
             }
         }
@@ -121,7 +134,7 @@ impl Device {
         for step in &steps {
             if recorded > 0 && recorded + step.evaluations > EVALUATIONS_PER_SUBMISSION {
                 queue.submit([encoder.finish()]);
-                self.wait(wgpu::PollType::wait_indefinitely())?;
+                self.wait()?;
                 tick(part(recorded))?;
                 left -= part(recorded);
                 recorded = 0;
@@ -131,60 +144,83 @@ impl Device {
             recorded += step.evaluations;
         }
         let bytes = layout.bytes(units.len()) as u64;
-        encoder.copy_buffer_to_buffer(&slot.output, 0, &slot.staging, 0, bytes);
-        let last = queue.submit([encoder.finish()]);
-        let (sender, mapped) = mpsc::channel();
-        slot.staging.map_async(wgpu::MapMode::Read, ..bytes, move |result| {
-            // Without a receiver nobody wants the tile any more.
-            let _ = sender.send(result);
-        });
-        slot.flight = Some(Flight { last, mapped, bytes, share: left });
+        slot.flight = Some((self.send(encoder, &slot.output, &slot.staging, bytes), left));
         times.dispatch += start.elapsed().as_secs_f64();
         Ok(())
     }
 
-    /// Waits for a tile and appends its values, without their padding. Returns the share of the work that
-    /// is done by that.
-    fn land(
-        &self,
-        slot: &mut Slot,
-        layout: &Layout,
-        times: &mut Stages,
-        values: &mut Vec<f32>,
-    ) -> Result<f64> {
-        let Some(Flight { last, mapped, bytes, share }) = slot.flight.take() else { return Ok(0.0) };
-        let start = Instant::now();
-        self.wait(wgpu::PollType::Wait { submission_index: Some(last), timeout: None })?;
-        times.dispatch += start.elapsed().as_secs_f64();
-        let start = Instant::now();
-        let lost = |why: String| Error::Device(format!("{}: cannot read results back: {why}", self.name()));
-        mapped.recv().map_err(|e| lost(e.to_string()))?.map_err(|e| lost(e.to_string()))?;
-        let view = slot.staging.get_mapped_range(..bytes).map_err(|e| lost(e.to_string()))?;
-        let (row, kept) = (layout.padded * layout.channels * 4, layout.texels * layout.channels * 4);
-        for row in view.chunks_exact(row) {
-            // Bytes of f32s, whatever their alignment.
-            values.extend(row[..kept].chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])));
-        }
-        drop(view);
-        slot.staging.unmap();
-        times.readback += start.elapsed().as_secs_f64();
-        Ok(share)
+    /// Reads a tile that was computed, and appends its values.
+    pub(super) fn read_back(&self, tile: &Tile, layout: &Layout, values: &mut Values) -> Result<()> {
+        let staging = self.staging(tile.buffer.size());
+        let encoder = self.baker.device.create_command_encoder(&Default::default());
+        let flight = self.send(encoder, &tile.buffer, &staging, tile.buffer.size());
+        self.arrive(&flight)?;
+        self.land(&staging, flight, layout, values)
     }
 
-    fn wait(&self, what: wgpu::PollType) -> Result<()> {
+    /// Submits what is recorded, and after it the copy of a result to where the host reads it.
+    fn send(
+        &self,
+        mut encoder: wgpu::CommandEncoder,
+        output: &wgpu::Buffer,
+        staging: &wgpu::Buffer,
+        bytes: u64,
+    ) -> Flight {
+        encoder.copy_buffer_to_buffer(output, 0, staging, 0, bytes);
+        let last = self.baker.queue.submit([encoder.finish()]);
+        let (sender, mapped) = mpsc::channel();
+        staging.map_async(wgpu::MapMode::Read, ..bytes, move |result| {
+            // Without a receiver nobody wants the tile any more.
+            let _ = sender.send(result);
+        });
+        Flight { last, mapped, bytes }
+    }
+
+    /// Waits until a result is there.
+    fn arrive(&self, flight: &Flight) -> Result<()> {
+        self.poll(wgpu::PollType::Wait { submission_index: Some(flight.last.clone()), timeout: None })
+    }
+
+    /// Appends the values of a result that is there.
+    fn land(
+        &self,
+        staging: &wgpu::Buffer,
+        flight: Flight,
+        layout: &Layout,
+        values: &mut Values,
+    ) -> Result<()> {
+        let Flight { mapped, bytes, .. } = flight;
+        let lost = |why: String| Error::Device(format!("{}: cannot read results back: {why}", self.name()));
+        mapped.recv().map_err(|e| lost(e.to_string()))?.map_err(|e| lost(e.to_string()))?;
+        let view = staging.get_mapped_range(..bytes).map_err(|e| lost(e.to_string()))?;
+        layout.append(&view, values);
+        drop(view);
+        staging.unmap();
+        Ok(())
+    }
+
+    /// Waits for all that was submitted.
+    pub(super) fn wait(&self) -> Result<()> {
+        self.poll(wgpu::PollType::wait_indefinitely())
+    }
+
+    fn poll(&self, what: wgpu::PollType) -> Result<()> {
         let polled = self.baker.device.poll(what);
         self.fault()?;
         polled.map_err(|e| Error::Device(format!("{}: {e}", self.name())))?;
         Ok(())
     }
 
-    fn slot(&self, bytes: u64) -> Slot {
-        let staging = self.baker.device.create_buffer(&wgpu::BufferDescriptor {
+    fn slot(&self, bytes: usize) -> Slot {
+        Slot { output: self.baker.output(bytes), staging: self.staging(bytes as u64), flight: None }
+    }
+
+    fn staging(&self, bytes: u64) -> wgpu::Buffer {
+        self.baker.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
             size: bytes,
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
-        });
-        Slot { output: self.baker.output(bytes as usize), staging, flight: None }
+        })
     }
 }

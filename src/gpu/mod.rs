@@ -7,10 +7,12 @@ mod baker;
 mod compose;
 mod device;
 mod evaluate;
+mod measure;
 mod stage;
 mod texture;
 
 pub use baker::{Baker, Prepared, Recorded};
 pub use compose::{Kernel, compose, validate};
 pub use device::{Adapter, Device, DeviceChoice, INSTALL, adapters};
+pub(crate) use measure::{Rates, Warm};
 pub use texture::TextureFormat;

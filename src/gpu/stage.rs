@@ -1,11 +1,12 @@
-//! The work of one lobe, uploaded: f64 factors rounded to f32, as the kernels lay them out.
+//! The work of one lobe, uploaded: f64 factors rounded to the kernels' precision, as they lay them out.
 
-use super::baker::{Baker, RAW_BYTES, count};
+use super::baker::{Baker, count};
 use super::compose::{Kernel, VALUE_WINDOW};
 use crate::error::Result;
 use crate::models::{ALPHA_MIN_INTEGRAL, Model};
-use crate::pair::{Azimuth, AzimuthF32, Pair, PairF32};
-use crate::plan::Lobe;
+use crate::pair::{Azimuth, Pair};
+use crate::plan::{Lobe, Precision};
+use crate::sampling::Sampler;
 use crate::slopes::TILE_ALPHAS;
 use crate::work::{Inner, Work, WorkKind};
 use bytemuck::{Pod, Zeroable};
@@ -23,6 +24,7 @@ pub(super) struct Stage {
     pub model: Option<&'static Model>,
     /// Channels, where the kernel is composed for them.
     pub channels: usize,
+    pub precision: Precision,
     pub job: Job,
     pub inputs: Vec<wgpu::Buffer>,
     /// The rows of a table of values, which are uploaded for each tile.
@@ -38,18 +40,27 @@ pub(super) struct Stage {
 /// The rows of a table of values: every α with every pair.
 pub(super) struct Rows {
     alphas: Vec<f64>,
-    pairs: Vec<PairF32>,
+    pairs: Vec<Row>,
 }
 
+/// `Pair` of `shaders/pair.wgsl` in f32, the only precision of values on a device. The last is α.
+type Row = [f32; 8];
+
 impl Rows {
+    fn new(alphas: &[f64], pairs: &[Pair]) -> Self {
+        let row = |pair: &Pair| pair.to_array().map(|x| x as f32);
+        Self { alphas: alphas.to_vec(), pairs: pairs.iter().map(row).collect() }
+    }
+
     /// Some of them as the kernel lays them out, in whole windows.
-    pub fn window(&self, units: &Range<usize>) -> Vec<PairF32> {
-        let row = |unit| {
-            let pair: PairF32 = self.pairs[unit % self.pairs.len()];
-            pair.with_alpha(self.alphas[unit / self.pairs.len()])
+    pub fn window(&self, units: &Range<usize>) -> Vec<Row> {
+        let row = |unit: usize| {
+            let mut row = self.pairs[unit % self.pairs.len()];
+            row[7] = self.alphas[unit / self.pairs.len()] as f32;
+            row
         };
         let mut rows: Vec<_> = units.clone().map(row).collect();
-        rows.resize(rows.len().next_multiple_of(VALUE_WINDOW), PairF32::zeroed());
+        rows.resize(rows.len().next_multiple_of(VALUE_WINDOW), Row::zeroed());
         rows
     }
 }
@@ -70,7 +81,14 @@ pub(super) struct Job {
 }
 
 impl Stages {
-    pub fn new(baker: &Baker, lobe: &Lobe, work: &Work, accumulate: bool) -> Result<Self> {
+    pub fn new(
+        baker: &Baker,
+        lobe: &Lobe,
+        work: &Work,
+        accumulate: bool,
+        precision: Precision,
+    ) -> Result<Self> {
+        let upload = Upload { baker, precision };
         let channels = lobe.weights.len();
         let job = Job { accumulate: u32::from(accumulate), ..Job::new(lobe) };
         match &work.kind {
@@ -79,12 +97,10 @@ impl Stages {
                     kernel: if accumulate { Kernel::AddValues } else { Kernel::Values },
                     model: Some(lobe.model),
                     channels,
+                    precision: Precision::F32,
                     job,
-                    inputs: vec![baker.quads(azimuths)],
-                    rows: Some(Rows {
-                        alphas: work.alphas.clone(),
-                        pairs: pairs.iter().map(PairF32::from).collect(),
-                    }),
+                    inputs: vec![upload.quads(azimuths)],
+                    rows: Some(Rows::new(&work.alphas, pairs)),
                     per_unit: azimuths.len().div_ceil(4),
                     units: 1,
                     cost: 4,
@@ -95,14 +111,15 @@ impl Stages {
                 inner: Stage {
                     model: Some(lobe.model),
                     per_unit: inner.count(),
-                    ..Stage::inner(baker, inner, &work.alphas)?
+                    ..Stage::inner(&upload, inner, &work.alphas)?
                 },
                 sum: Some(Stage {
                     kernel: Kernel::Sum,
                     model: None,
                     channels: 0,
+                    precision,
                     job: Job { columns: count(channels)?, nodes: count(outer.len())?, ..job },
-                    inputs: vec![baker.reals(outer)],
+                    inputs: vec![upload.reals(outer)],
                     rows: None,
                     per_unit: inner.count() / outer.len(),
                     units: 1,
@@ -114,43 +131,49 @@ impl Stages {
 
     /// Bytes between the stages for each unit.
     pub fn raw_bytes_per_unit(&self) -> usize {
-        if self.sum.is_some() { self.inner.per_unit * RAW_BYTES } else { 0 }
+        if self.sum.is_some() { self.inner.per_unit * 2 * self.inner.precision.bytes() } else { 0 }
     }
 }
 
 impl Stage {
     /// The kernel, counts and inputs of inner integrals.
-    fn inner(baker: &Baker, inner: &Inner, alphas: &[f64]) -> Result<Self> {
+    fn inner(upload: &Upload, inner: &Inner, alphas: &[f64]) -> Result<Self> {
         let (kernel, azimuths, nodes, inputs) = match inner {
             Inner::Slopes(work) => {
-                // What is so near the mirror that it is the mirror's in f64 is 0 to the kernel.
-                let mut alphas: Vec<_> = alphas
-                    .iter()
-                    .map(|&alpha| if alpha < ALPHA_MIN_INTEGRAL { 0.0 } else { alpha })
-                    .collect();
-                let rows = alphas.len();
-                alphas.resize(rows.next_multiple_of(TILE_ALPHAS), 1.0);
+                let (alphas, rows) = fours(alphas);
                 let pair = |[a, b]: [Range<usize>; 2]| [a.start, a.len(), b.start, b.len()].map(|n| n as u32);
                 let columns: Vec<_> = work.columns.iter().cloned().map(pair).collect();
                 let tiles: Vec<_> = work.tiles().map(pair).collect();
-                let azimuths: Vec<_> = work.azimuths.iter().map(|a| a.map(|x| x as f32)).collect();
-                let nodes: Vec<_> = work.nodes.iter().map(|n| [n.x as f32, n.weight as f32]).collect();
+                let nodes: Vec<_> = work.nodes.iter().map(|node| [node.x, node.weight]).collect();
                 let inputs = vec![
-                    baker.reals(&alphas),
-                    baker.reals(&work.mus),
-                    baker.input(&columns),
-                    baker.input(&tiles),
-                    baker.input(&azimuths),
-                    baker.input(&nodes),
+                    upload.reals(&alphas),
+                    upload.reals(&work.mus),
+                    upload.input(&columns),
+                    upload.input(&tiles),
+                    upload.reals(work.azimuths.as_flattened()),
+                    upload.reals(nodes.as_flattened()),
                 ];
                 (Kernel::Slopes, 0, rows, inputs)
             }
             Inner::Product { pairs, azimuths } => {
-                let inputs = vec![baker.reals(alphas), baker.pairs(pairs), baker.azimuths(azimuths)];
+                let inputs = vec![upload.reals(alphas), upload.pairs(pairs), upload.azimuths(azimuths)];
                 (Kernel::Product, azimuths.len(), 0, inputs)
             }
+            Inner::Samples(work) => {
+                let (alphas, rows) = fours(alphas);
+                let mut inputs = vec![upload.reals(&alphas), upload.reals(&work.mus)];
+                let kernel = match work.sampler {
+                    Sampler::Ndf => Kernel::Ndf,
+                    Sampler::Vndf => Kernel::Vndf,
+                    Sampler::Random => Kernel::Random,
+                };
+                if !work.draws.is_empty() {
+                    inputs.push(upload.reals(work.draws.as_flattened()));
+                }
+                (kernel, work.chunk, rows, inputs)
+            }
             Inner::Analytic { mus, .. } => {
-                (Kernel::Analytic, 0, 0, vec![baker.reals(alphas), baker.reals(mus)])
+                (Kernel::Analytic, 0, 0, vec![upload.reals(alphas), upload.reals(mus)])
             }
         };
         let job = Job {
@@ -159,11 +182,12 @@ impl Stage {
             nodes: count(nodes)?,
             ..Job::zeroed()
         };
-        let units = if kernel == Kernel::Slopes { TILE_ALPHAS } else { 1 };
+        let units = if matches!(inner, Inner::Slopes(_) | Inner::Samples(_)) { TILE_ALPHAS } else { 1 };
         Ok(Self {
             kernel,
             model: None,
             channels: 0,
+            precision: upload.precision,
             job,
             inputs,
             rows: None,
@@ -174,30 +198,50 @@ impl Stage {
     }
 }
 
+/// α padded to whole fours, and how many there were. What is so near the mirror that it is the mirror's
+/// in f64 is 0 to the kernels.
+fn fours(alphas: &[f64]) -> (Vec<f64>, usize) {
+    let mut padded: Vec<_> =
+        alphas.iter().map(|&alpha| if alpha < ALPHA_MIN_INTEGRAL { 0.0 } else { alpha }).collect();
+    padded.resize(alphas.len().next_multiple_of(TILE_ALPHAS), 1.0);
+    (padded, alphas.len())
+}
+
 impl Job {
     fn new(lobe: &Lobe) -> Self {
         let mut weights = [[0.0; 4]; 3];
-        for (row, [a, b]) in weights.iter_mut().zip(&lobe.weights) {
-            *row = [*a as f32, *b as f32, 0.0, 0.0];
+        for (row, &[a, b]) in weights.iter_mut().zip(&lobe.weights) {
+            // What f32 drops is kept for kernels in f64.
+            let rest = |x: f64| (x - f64::from(x as f32)) as f32;
+            *row = [a as f32, b as f32, rest(a), rest(b)];
         }
         Self { weights, ..Self::zeroed() }
     }
 }
 
-impl Baker {
+/// Uploads numbers in the kernels' precision.
+struct Upload<'a> {
+    baker: &'a Baker,
+    precision: Precision,
+}
+
+impl Upload<'_> {
     fn reals(&self, values: &[f64]) -> wgpu::Buffer {
-        self.input(&values.iter().map(|&x| x as f32).collect::<Vec<_>>())
+        match self.precision {
+            Precision::F32 => self.input(&values.iter().map(|&x| x as f32).collect::<Vec<_>>()),
+            Precision::F64 => self.input(values),
+        }
     }
 
     fn pairs(&self, pairs: &[Pair]) -> wgpu::Buffer {
-        self.input(&pairs.iter().map(PairF32::from).collect::<Vec<_>>())
+        self.reals(pairs.iter().map(|pair| pair.to_array()).collect::<Vec<_>>().as_flattened())
     }
 
     fn azimuths(&self, azimuths: &[Azimuth]) -> wgpu::Buffer {
-        self.input(&azimuths.iter().map(AzimuthF32::from).collect::<Vec<_>>())
+        self.reals(azimuths.iter().map(|azimuth| azimuth.to_array()).collect::<Vec<_>>().as_flattened())
     }
 
-    /// Azimuths by fours, sin² and then cos², in whole windows.
+    /// Azimuths of values by fours, sin² and then cos², in whole windows.
     fn quads(&self, azimuths: &[Azimuth]) -> wgpu::Buffer {
         let four = |four: &[Azimuth]| {
             // The last one fills the last quad.
@@ -207,10 +251,10 @@ impl Baker {
         };
         let mut quads: Vec<_> = azimuths.chunks(4).map(four).collect();
         quads.resize(quads.len().next_multiple_of(VALUE_WINDOW), [[0.0; 4]; 2]);
-        self.init(bytemuck::cast_slice(&quads), wgpu::BufferUsages::UNIFORM)
+        self.baker.init(bytemuck::cast_slice(&quads), wgpu::BufferUsages::UNIFORM)
     }
 
     fn input<T: Pod>(&self, items: &[T]) -> wgpu::Buffer {
-        self.init(bytemuck::cast_slice(items), wgpu::BufferUsages::STORAGE)
+        self.baker.init(bytemuck::cast_slice(items), wgpu::BufferUsages::STORAGE)
     }
 }

@@ -3,7 +3,7 @@
 use super::baker::{Baker, Recorded};
 use super::compose::Kernel;
 use crate::error::{Error, Result};
-use crate::plan::TablePlan;
+use crate::plan::{Precision, TablePlan};
 use crate::table::ErrorKind;
 use bytemuck::{Pod, Zeroable};
 
@@ -106,7 +106,7 @@ impl Baker {
         };
         let packing = self.init(bytemuck::bytes_of(&packing), wgpu::BufferUsages::UNIFORM);
         let texels = self.output(pitch as usize * height as usize);
-        let pipeline = self.pipeline(Kernel::Pack, None, 0)?;
+        let pipeline = self.pipeline(Kernel::Pack, None, 0, Precision::F32)?;
         let buffers = [&packing, &recorded.buffer, &texels];
         let bind = |(binding, buffer): (u32, &wgpu::Buffer)| (binding, buffer.clone());
         let buffers: Vec<_> = (0..).zip(buffers).map(bind).collect();

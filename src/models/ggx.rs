@@ -5,6 +5,7 @@ use super::fresnel::schlick::{self, fresnel};
 use super::masking::smith::{self, masking, visibility};
 use super::ndf::ggx::{self, Map, map, map_end, ndf};
 use super::ndf::ggx_nodes;
+use super::ndf::ggx_samples;
 use super::{Component, Integral, Model, Slopes, part};
 use crate::pair::Half;
 use crate::reference;
@@ -23,6 +24,7 @@ pub(crate) static MODEL: Model = Model {
         azimuths: ggx_nodes::azimuths,
         nodes: ggx_nodes::nodes,
         mirror_limit: |mu_e| fresnel(mu_e, 1.0 - mu_e),
+        sampling: ggx_samples::SAMPLING,
     }),
     lobe: |p, a, alpha| {
         let h = Half::new(p, a);

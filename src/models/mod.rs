@@ -66,8 +66,9 @@ pub struct Part {
 pub enum Integral {
     /// In slopes of the microfacet normal, for lobes of any width.
     Slopes(&'static Slopes),
-    /// Gauss–Legendre in θe, midpoints in δφ: for lobes as wide as the hemisphere.
-    Smooth,
+    /// Gauss–Legendre in θe, midpoints in δφ: for lobes as wide as the hemisphere. How many of each
+    /// meet a tolerance.
+    Smooth(fn(tolerance: f64) -> [usize; 2]),
     /// In closed form: (A, B) of ρ(μ). Such a model is a delta and has no values.
     Delta(fn(mu: f64, alpha: f64) -> [f64; 2]),
 }
@@ -84,6 +85,19 @@ pub struct Slopes {
     pub(crate) nodes: fn(mu: f64, alpha: f64, tolerance: f64) -> [usize; 2],
     /// What α → 0 tends to.
     pub(crate) mirror_limit: fn(mu_e: f64) -> [f64; 2],
+    /// What peers do in place of all that.
+    pub(crate) sampling: Sampling,
+}
+
+/// Importance sampling of a microfacet lobe: (A, B) of f μi / p for a draw of two numbers, the second
+/// the cosine of an azimuth.
+pub(crate) struct Sampling {
+    /// The functions that the sampling kernels call.
+    pub part: Part,
+    /// Of the normals' distribution.
+    pub ndf: fn(draw: [f64; 2], mu_e: f64, alpha: f64) -> [f64; 2],
+    /// Of the normals that ωe sees.
+    pub vndf: fn(draw: [f64; 2], mu_e: f64, alpha: f64) -> [f64; 2],
 }
 
 /// The smallest α > 0 that has values: below it, f of both directions at grazing would leave f32.
@@ -96,6 +110,13 @@ pub const ALPHA_MIN_INTEGRAL: f64 = 1e-12;
 /// The registry.
 pub static MODELS: [&Model; 4] =
     [&diffuse::lambert::MODEL, &diffuse::gltf_diffuse::MODEL, &ggx::MODEL, &mirror::MODEL];
+
+/// The index of a tolerance in the tables of node counts, which are for 1e-1 … 1e-10: that of the power
+/// of ten at or below it.
+pub(crate) fn decade(tolerance: f64) -> usize {
+    // The slack forgives the rounding of 1e-3.
+    (-tolerance.log10() - 1e-9).ceil().clamp(1.0, 10.0) as usize - 1
+}
 
 /// The model of this name.
 pub fn find(name: &str) -> Result<&'static Model> {

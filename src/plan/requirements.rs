@@ -4,8 +4,10 @@ use super::{DEFAULT_TOLERANCE, Lobe, Rule, TablePlan};
 use crate::axis::{Axis, Mapping, Positions, Variable};
 use crate::error::{Error, Result};
 use crate::models::{self, ALPHA_MIN_VALUE, MODELS, Model};
+use crate::optimise::optimise;
 use crate::quantity::{self, BRDF, Evaluation, QUANTITIES, Quantity, RHO_DH};
 use crate::scene::{Distribution, LeftOut, Material, Scene, SubjectRequest, TableRequest, Weights};
+use crate::storage::Storage;
 use serde::Serialize;
 use std::collections::HashSet;
 use std::fmt;
@@ -341,8 +343,12 @@ fn requested(request: &TableRequest, scene: &Scene, tolerance: f64) -> Result<Ta
             TablePlan::material(name(subject), quantity, scene, subject, axes)?
         }
     };
-    let rule = request.grid.map_or(Rule::Warped, |[theta, phi]| Rule::Grid { theta, phi });
-    Ok(table.with_rule(rule)?.with_tolerance(request.tolerance.unwrap_or(tolerance)))
+    let table = table.with_rule(request.rule.unwrap_or(Rule::Warped))?;
+    let table = table.with_tolerance(request.tolerance.unwrap_or(tolerance));
+    if request.auto.is_empty() {
+        return table.with_storage(request.storage.unwrap_or_default()).checked();
+    }
+    optimise(table, &request.auto, request.storage)?.checked()
 }
 
 impl TablePlan {
@@ -388,6 +394,8 @@ fn material_table(
         lobes,
         rule: Rule::Warped,
         tolerance: DEFAULT_TOLERANCE,
+        storage: Storage::F32,
+        bilinear: None,
     }
     .checked()
 }

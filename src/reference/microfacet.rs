@@ -47,7 +47,7 @@ impl<N: Ndf, M: Masking> Reference for Microfacet<N, M> {
 }
 
 /// Of ρ_dh, absolute.
-const TOLERANCE: f64 = 1e-10;
+const TOLERANCE: f64 = 1e-11;
 
 /// The integral over θm is noise to the one over φ, so it has to be finer by this factor.
 const FINER: f64 = 0.1;
@@ -59,10 +59,10 @@ impl<N: Ndf, M: Masking> Microfacet<N, M> {
     /// As dωi = 4 (ωe·ωm) dωm (Walter et al. 2007, eq. 14), ρ = ∫ F D G2 (ωe·ωm) / μe dωm over the normals
     /// that reflect ωe above the horizon.
     fn rho_dh_within(&self, tolerance: f64, mu: f64, alpha: f64) -> [f64; 2] {
+        let mu = mu.clamp(MIN_MU, 1.0);
         if alpha == 0.0 {
             return MIRROR.rho_dh(mu, alpha);
         }
-        let mu = mu.clamp(MIN_MU, 1.0);
         // With ωe at azimuth 0, the horizon falls from tan θm ~ 2/μ to ~ μ/2 as φ passes π/2, on the scale μ:
         // φ = π/2 + μ sinh u. The other half of the normals, beyond φ = π, mirrors this one.
         let reach = (FRAC_PI_2 / mu).asinh();

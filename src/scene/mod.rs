@@ -11,9 +11,11 @@ pub use distribution::Distribution;
 #[cfg(feature = "scene")]
 pub use recipe::parse as parse_recipe;
 
-use crate::axis::Axis;
+use crate::axis::{Axis, Variable};
 #[cfg(feature = "scene")]
 use crate::error::{Error, Result};
+use crate::plan::Rule;
+use crate::storage::Storage;
 #[cfg(feature = "scene")]
 use std::path::Path;
 use std::path::PathBuf;
@@ -86,8 +88,12 @@ pub struct TableRequest {
     pub subject: SubjectRequest,
     /// The axes that the recipe names; the plan adds the natural ones that are missing.
     pub axes: Vec<Axis>,
+    /// The axes among them whose samples the plan chooses: these count for their range alone.
+    pub auto: Vec<Variable>,
+    /// The format of the values; `None`: f32, or the plan's choice where it chooses axes.
+    pub storage: Option<Storage>,
     /// The integration rule; `None`: the plan's choice.
-    pub grid: Option<[usize; 2]>,
+    pub rule: Option<Rule>,
     /// This table's tolerance, in place of the recipe's.
     pub tolerance: Option<f64>,
     /// Where the request stands: "recipe.toml: line 7", for messages about it.

@@ -6,8 +6,9 @@ use super::{Distribution, Material, MaterialLobe, Scene, SubjectRequest, TableRe
 use crate::axis::{Axis, MAX_COUNT, Mapping, Positions, Variable};
 use crate::error::{Error, Result};
 use crate::models::{Component, MODELS};
-use crate::plan::MAX_GRID;
-use crate::quantity::QUANTITIES;
+use crate::plan::{MAX_GAUSS, MAX_GRID, MAX_SAMPLES, Rule};
+use crate::quantity::{Evaluation, QUANTITIES};
+use crate::storage::Storage;
 use document::{Document, Fields, Item};
 use std::collections::HashSet;
 use std::path::Path;
@@ -132,6 +133,8 @@ fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
         "alpha",
         "axes",
         "grid",
+        "rule",
+        "storage",
         "tolerance",
     ])?;
     let name = fields.get("name").map(table_name).transpose()?;
@@ -139,7 +142,7 @@ fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
     let quantity = quantity.one_of(QUANTITIES.iter().map(|q| (q.name, q)))?;
     let (subject, varies) = subject(&fields, materials)?;
 
-    let mut axes = Vec::new();
+    let (mut axes, mut auto) = (Vec::new(), Vec::new());
     if let Some(item) = fields.get("axes") {
         let variables = quantity.variables.iter().copied().chain([Variable::Roughness]);
         let variables: Vec<_> = variables.map(|v| (v.name(), v)).collect();
@@ -147,6 +150,15 @@ fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
             let variable = axis_item.key_one_of(variables.iter().copied())?;
             if variable == Variable::Roughness {
                 varies.map_err(|why| axis_item.refuse(why))?;
+            }
+            if let Some(range) = auto_range(&axis_item, variable)? {
+                if quantity.evaluation == Evaluation::Value {
+                    return Err(axis_item.refuse("only integrals have auto axes; give a count"));
+                }
+                let varying = varying_roughness(&fields, materials, variable);
+                axes.push(range_axis(&axis_item, variable, range.or(varying))?);
+                auto.push(variable);
+                continue;
             }
             axes.push(axis(axis_item, variable)?);
         }
@@ -156,7 +168,12 @@ fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
         quantity: quantity.name.into(),
         subject,
         axes,
-        grid: fields.get("grid").map(grid).transpose()?,
+        auto,
+        storage: fields
+            .get("storage")
+            .map(|item| item.one_of(Storage::ALL.map(|s| (s.name(), s))))
+            .transpose()?,
+        rule: rule(&fields)?,
         tolerance: fields.get("tolerance").map(|t| t.number_in(TOLERANCES)).transpose()?,
         place: item.place(),
     })
@@ -240,10 +257,77 @@ fn check_names(tables: &[TableRequest]) -> Result<()> {
     Ok(())
 }
 
-/// `grid = [n_theta, n_phi]`
-fn grid(item: Item) -> Result<[usize; 2]> {
-    let [theta, phi] = pair(item)?;
-    Ok([theta.count(MAX_GRID)?, phi.count(MAX_GRID)?])
+/// `rule = "warped"`, or `rule = { NAME = [n_theta, n_phi] }`, or `rule = { NAME = samples }`; also
+/// `grid = [n_theta, n_phi]`.
+fn rule(fields: &Fields) -> Result<Option<Rule>> {
+    let nodes = |item: Item, most| -> Result<[usize; 2]> {
+        let [theta, phi] = pair(item)?;
+        Ok([theta.count(most)?, phi.count(most)?])
+    };
+    let grid = |item| nodes(item, MAX_GRID).map(|[theta, phi]| Some(Rule::Grid { theta, phi }));
+    let item = match (fields.get("grid"), fields.get("rule")) {
+        (None, None) => return Ok(None),
+        (Some(item), None) => return grid(item),
+        (Some(_), Some(item)) => return Err(item.refuse("grid is given too; keep one of them")),
+        (None, Some(item)) => item,
+    };
+    if !item.is_table() {
+        return item.one_of([("warped", Some(Rule::Warped))]);
+    }
+    let entries = item.entries()?;
+    let [entry] = entries[..] else { return Err(item.refuse("give one rule: { NAME = … }")) };
+    let names = ["grid", "gauss", "hammersley", "vndf", "random"];
+    Ok(match entry.key_one_of(names.map(|name| (name, name)))? {
+        "grid" => grid(entry)?,
+        "gauss" => nodes(entry, MAX_GAUSS).map(|[theta, phi]| Some(Rule::Gauss { theta, phi }))?,
+        name => {
+            let samples = entry.count(MAX_SAMPLES)?;
+            Some(match name {
+                "hammersley" => Rule::Hammersley { samples },
+                "vndf" => Rule::Vndf { samples },
+                _ => Rule::Random { samples },
+            })
+        }
+    })
+}
+
+/// Whether an axis is "auto", or `{ count = "auto", range = [a, b] }`; then the range that it gives.
+fn auto_range(item: &Item<'_>, variable: Variable) -> Result<Option<Option<[f64; 2]>>> {
+    let is_auto = |item: &Item| item.text().is_ok_and(|text| text == "auto");
+    let refuse = || item.refuse("only mu and roughness can be auto; give a count");
+    let can = matches!(variable, Variable::Mu | Variable::Roughness);
+    if is_auto(item) {
+        return if can { Ok(Some(None)) } else { Err(refuse()) };
+    }
+    if !item.is_table() {
+        return Ok(None);
+    }
+    let fields = item.any_table()?;
+    if !fields.get("count").is_some_and(|count| is_auto(&count)) {
+        return Ok(None);
+    }
+    if !can {
+        return Err(refuse());
+    }
+    let fields = item.table(&["count", "range"])?;
+    let Some(range) = fields.get("range") else { return Ok(Some(None)) };
+    let [a, b] = pair(range)?;
+    Ok(Some(Some([a.number()?, b.number()?])))
+}
+
+/// The roughness that the table's material takes, where it is one that varies.
+fn varying_roughness(fields: &Fields, materials: &[Material], variable: Variable) -> Option<[f64; 2]> {
+    let name = fields.get("material").filter(|_| variable == Variable::Roughness)?.text().ok()?;
+    let material = materials.iter().find(|m| m.name == name)?;
+    let all = Distribution::union(material.lobes.iter().filter_map(|lobe| lobe.roughness.as_ref()))?;
+    Some([all.min(), all.max()])
+}
+
+/// An axis that stands for its range, until the plan chooses its samples.
+fn range_axis(item: &Item, variable: Variable, range: Option<[f64; 2]>) -> Result<Axis> {
+    let range = range.unwrap_or(variable.natural_range());
+    let axis = Axis::new(variable, 2, range, Positions::Nodes, Mapping::Linear);
+    axis.map_err(|error| error.at(item.place()))
 }
 
 /// A count, `{ count, range, positions, mapping }`, or `{ values }`.

@@ -6,7 +6,7 @@ use gonio::bake::{Evaluator, Stages, Unobserved};
 use gonio::check::Check;
 use gonio::gpu::{DeviceChoice, INSTALL};
 use gonio::models::{self, Model};
-use gonio::plan::TablePlan;
+use gonio::plan::{INTEGRAL_F32, Precision, TablePlan, VALUE_F32};
 use gonio::quantity::Quantity;
 use gonio::table::Table;
 use std::sync::OnceLock;
@@ -47,7 +47,7 @@ pub fn listed(variable: Variable, values: &[f64]) -> Axis {
     Axis::listed(variable, values).unwrap()
 }
 
-/// A basis over `axes`, after a roughness axis if the model has one.
+/// A basis over `axes`, after a roughness axis if the model has one, as exact as f32 is.
 pub fn basis(
     quantity: &'static Quantity,
     model: &'static Model,
@@ -56,7 +56,11 @@ pub fn basis(
 ) -> TablePlan {
     let swept = model.has_roughness.then(|| listed(Variable::Roughness, roughness));
     let axes = swept.into_iter().chain(axes).collect();
-    TablePlan::basis("test", quantity, model, None, axes).unwrap()
+    let plan = TablePlan::basis("test", quantity, model, None, axes).unwrap();
+    let exact = [INTEGRAL_F32, VALUE_F32]
+        .into_iter()
+        .find(|&t| plan.clone().with_tolerance(t).precision() == Precision::F32);
+    plan.with_tolerance(exact.unwrap())
 }
 
 pub fn bake(evaluator: &Evaluator, plan: &TablePlan, check: Check) -> Table {

@@ -10,6 +10,8 @@ pub struct Exr {
     pub height: usize,
     /// Samples by channel, row by row from the top.
     pub channels: BTreeMap<String, Vec<f32>>,
+    /// Whether the samples are 16-bit floats in the file.
+    pub half: bool,
     /// Type and bytes of each attribute.
     pub attributes: BTreeMap<String, (String, Vec<u8>)>,
 }
@@ -23,7 +25,7 @@ impl Exr {
     }
 }
 
-/// Reads a single-part, uncompressed scanline file of 32-bit float channels: openexr.com, "OpenEXR File
+/// Reads a single-part, uncompressed scanline file of 32-bit float channels, or all of 16 bits: openexr.com, "OpenEXR File
 /// Layout" and "Technical Introduction".
 pub fn exr(file: &[u8]) -> Result<Exr, String> {
     let mut at = Cursor(file);
@@ -63,7 +65,7 @@ pub fn exr(file: &[u8]) -> Result<Exr, String> {
     let (width, height) = ((x1 - x0 + 1) as usize, (y1 - y0 + 1) as usize);
 
     let mut list = Cursor(raw("channels")?);
-    let mut names = Vec::new();
+    let (mut names, mut halves) = (Vec::new(), Vec::new());
     loop {
         let name = list.word()?;
         if name.is_empty() {
@@ -72,10 +74,15 @@ pub fn exr(file: &[u8]) -> Result<Exr, String> {
         let kind = list.i32()?;
         list.take(4)?; // perceptually linear or not, and padding
         let sampling = [list.i32()?, list.i32()?];
-        if kind != 2 || sampling != [1, 1] {
+        if !(kind == 1 || kind == 2) || sampling != [1, 1] {
             return Err(format!("channel {name}: type {kind}, sampling {sampling:?}"));
         }
         names.push(name);
+        halves.push(kind == 1);
+    }
+    let half = halves.first() == Some(&true);
+    if halves.iter().any(|&other| other != half) {
+        return Err("channels of both kinds".into());
     }
     if !names.is_sorted() {
         return Err("channels are not in the order of their names".into());
@@ -86,21 +93,46 @@ pub fn exr(file: &[u8]) -> Result<Exr, String> {
     for (row, offset) in offsets.into_iter().enumerate() {
         let mut block = Cursor(file.get(offset as usize..).ok_or("offset beyond the end")?);
         let (y, size) = (block.i32()?, block.i32()?);
-        if y != y0 + row as i32 || size as usize != names.len() * width * 4 {
+        if y != y0 + row as i32 || size as usize != names.len() * width * if half { 2 } else { 4 } {
             return Err(format!("row {row}: y = {y}, {size} bytes"));
         }
         for name in &names {
             let samples = channels.get_mut(name).ok_or("channel")?;
             for _ in 0..width {
-                samples.push(f32::from_le_bytes(block.array()?));
+                samples.push(match half {
+                    true => self::half(u16::from_le_bytes(block.array()?)) as f32,
+                    false => f32::from_le_bytes(block.array()?),
+                });
             }
         }
     }
-    Ok(Exr { width, height, channels, attributes })
+    Ok(Exr { width, height, channels, half, attributes })
 }
 
-/// Reads a little-endian float32 array in C order: numpy.org, "numpy.lib.format". Shape and values.
+/// A 16-bit float: IEEE 754-2008, 3.6.
+pub fn half(bits: u16) -> f64 {
+    let (exponent, fraction) = (i32::from(bits >> 10 & 31), f64::from(bits & 1023));
+    let size = match exponent {
+        0 => fraction * 2f64.powi(-24),
+        31 if fraction == 0.0 => f64::INFINITY,
+        31 => f64::NAN,
+        _ => (1024.0 + fraction) * 2f64.powi(exponent - 25),
+    };
+    if bits >> 15 == 1 { -size } else { size }
+}
+
+/// Reads a little-endian float32 array. Shape and values.
 pub fn npy(file: &[u8]) -> Result<(Vec<usize>, Vec<f32>), String> {
+    let (descr, shape, bytes) = npy_raw(file)?;
+    if descr != "<f4" {
+        return Err(format!("not little-endian float32: {descr}"));
+    }
+    let words = bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+    Ok((shape, words.collect()))
+}
+
+/// Reads an array in C order: numpy.org, "numpy.lib.format". Type, shape and bytes.
+pub fn npy_raw(file: &[u8]) -> Result<(String, Vec<usize>, Vec<u8>), String> {
     let mut at = Cursor(file);
     if at.take(6)? != b"\x93NUMPY" {
         return Err("not an NPY file".into());
@@ -115,19 +147,20 @@ pub fn npy(file: &[u8]) -> Result<(Vec<usize>, Vec<f32>), String> {
         let (_, rest) = header.split_once(&format!("'{key}':")).ok_or(format!("no {key}"))?;
         Ok(rest.trim_start())
     };
-    if !value("descr")?.starts_with("'<f4'") || !value("fortran_order")?.starts_with("False") {
-        return Err(format!("not little-endian float32 in C order: {header}"));
+    if !value("fortran_order")?.starts_with("False") {
+        return Err(format!("not in C order: {header}"));
     }
+    let descr = value("descr")?.strip_prefix('\'').and_then(|d| d.split_once('\'')).ok_or("no descr")?.0;
+    let size: usize = descr.get(2..).and_then(|n| n.parse().ok()).ok_or("no size")?;
     let (shape, _) = value("shape")?.strip_prefix('(').and_then(|s| s.split_once(')')).ok_or("no tuple")?;
     let words = shape.split(',').map(str::trim).filter(|word| !word.is_empty());
     let shape: Vec<usize> =
         words.map(|word| word.parse().map_err(|_| format!("{word} in shape"))).collect::<Result<_, _>>()?;
     let count: usize = shape.iter().product();
-    if at.0.len() != count * 4 {
+    if at.0.len() != count * size {
         return Err(format!("{} bytes for {count} values", at.0.len()));
     }
-    let values = (0..count).map(|_| at.array().map(f32::from_le_bytes)).collect::<Result<_, _>>()?;
-    Ok((shape, values))
+    Ok((descr.into(), shape, at.0.to_vec()))
 }
 
 /// The bytes that are still to be read.

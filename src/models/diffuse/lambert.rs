@@ -12,7 +12,7 @@ pub(crate) static MODEL: Model = Model {
     has_roughness: false,
     rho_bound: 1.0,
     parts: &[part!("diffuse/lambert")],
-    integral: Integral::Smooth,
+    integral: Integral::Smooth(|_| [8, 1]),
     lobe: |_, _, _| [FRAC_1_PI, 0.0],
     reference: Some(reference::LAMBERT),
 };

@@ -11,7 +11,7 @@ pub(crate) fn visibility(mu_i: f64, mu_e: f64, alpha: f64) -> f64 {
 }
 
 /// (1 + 2Λ) μ
-fn root(mu: f64, alpha: f64) -> f64 {
+pub(crate) fn root(mu: f64, alpha: f64) -> f64 {
     (alpha * alpha + (1.0 - alpha * alpha) * mu * mu).sqrt()
 }
 

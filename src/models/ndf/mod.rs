@@ -2,3 +2,4 @@
 
 pub(crate) mod ggx;
 pub(crate) mod ggx_nodes;
+pub(crate) mod ggx_samples;

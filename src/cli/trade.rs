@@ -1,0 +1,171 @@
+//! `gonio trade`
+
+use super::watch::Watch;
+use super::{HEADING, print, print_json, tell, warn};
+use crate::axis::{Axis, Variable};
+use crate::bake::Evaluator;
+use crate::error::{Error, Result};
+use crate::gpu::DeviceChoice;
+use crate::models;
+use crate::plan::{Plan, Selection, TablePlan};
+use crate::quantity::{self, Evaluation};
+use crate::scene;
+use crate::trade::{Options, Point, Trade, measure, write};
+use serde_json::json;
+use std::path::PathBuf;
+
+#[derive(clap::Args)]
+#[command(after_help = AFTER_HELP)]
+pub struct Args {
+    /// A recipe (.toml) or scene: its first table of integrals is measured
+    recipe: Option<PathBuf>,
+    /// The folder for trade.csv, trade.json and trade.png; made if it is not there
+    #[arg(long, short, value_name = "DIR")]
+    out: PathBuf,
+    /// Without a recipe: rho_dh, rho_hh or split_sum. With one: its first table of this quantity
+    #[arg(long, value_name = "Q")]
+    quantity: Option<String>,
+    /// Without a recipe: the model [default: ggx]
+    #[arg(long, value_name = "M", conflicts_with = "recipe")]
+    model: Option<String>,
+    /// Without a recipe: samples along each axis
+    #[arg(long, value_name = "N", default_value = "128", conflicts_with = "recipe")]
+    size: usize,
+    /// auto: the best GPU, else software Vulkan, else the CPU path; cpu; or a part of an adapter's name
+    #[arg(long, value_name = "NAME", default_value = "auto")]
+    device: DeviceChoice,
+    /// About how long to measure: 60, 60s or 2m. Counted in evaluations at a nominal speed, so that a slow
+    /// device takes longer and no result depends on the clock
+    #[arg(long, value_name = "TIME", default_value = "60s", value_parser = seconds)]
+    budget: f64,
+    /// Texels to compare with the f64 reference: a seeded subset, the same for all methods, or all
+    #[arg(long, value_name = "TEXELS", default_value = "subset", value_parser = ["subset", "all"])]
+    check: String,
+    /// Print trade.json on stdout, and everything for people on stderr
+    #[arg(long)]
+    json: bool,
+}
+
+const AFTER_HELP: &str = "\
+Examples:
+  gonio trade --out trade
+  gonio trade --quantity rho_dh --model ggx --size 64 --budget 20s --out trade
+  gonio trade dfg.toml --device cpu --out trade
+
+Methods: warped (this project's), gauss and grid (over θ and φ), hammersley (what most bakers do), vndf
+(visible normals) and random. A point is marked * where nothing measured is both faster and more exact, and
+~ where only the subset was computed and its time is extrapolated.
+
+Exit codes: 0 success, 2 bad input, 3 no device, 130 interrupted";
+
+/// A time span in seconds.
+fn seconds(text: &str) -> Result<f64, String> {
+    let (number, unit) = match text.strip_suffix('m') {
+        Some(number) => (number, 60.0),
+        None => (text.strip_suffix('s').unwrap_or(text), 1.0),
+    };
+    let value: f64 =
+        number.trim().parse().map_err(|_| format!("\"{text}\" is not a time; give 60s or 2m"))?;
+    let value = value * unit;
+    if value > 0.0 && value <= 86_400.0 { Ok(value) } else { Err("give a time above 0, to a day".into()) }
+}
+
+pub fn run(args: &Args) -> Result<()> {
+    let table = table(args)?;
+    let (evaluator, line) = Evaluator::choose(&args.device)?;
+    let say = |text: &str| {
+        if args.json {
+            tell(text);
+            return Ok(());
+        }
+        print(text)
+    };
+    say(&format!("{HEADING}device{HEADING:#}  {line}"))?;
+    let device = match &evaluator {
+        Evaluator::Device(device) => {
+            json!({ "kind": device.kind(), "name": device.name(), "driver": device.driver() })
+        }
+        Evaluator::Cpu => json!({ "kind": "CPU", "name": "cpu", "driver": "f64" }),
+    };
+    let options = Options { budget: args.budget, check_all: args.check == "all" };
+    let watch = Watch::new(options.steps());
+    let trade = measure(&table, &evaluator, &options, &watch);
+    watch.finish();
+    let trade = trade?;
+    let json = write(&args.out, &trade, &device)?;
+    for line in lines(&trade) {
+        say(&line)?;
+    }
+    trade.left_out.iter().for_each(|what| warn(&format!("not measured: {what}")));
+    say(&format!("trade.csv, trade.json and trade.png in {}", args.out.display()))?;
+    if args.json { print_json(&json) } else { Ok(()) }
+}
+
+/// The table to measure.
+fn table(args: &Args) -> Result<TablePlan> {
+    let Some(path) = &args.recipe else {
+        let quantity = quantity::find(args.quantity.as_deref().unwrap_or("split_sum"))?;
+        let model = models::find(args.model.as_deref().unwrap_or("ggx"))?;
+        let rough = model.has_roughness.then_some(Variable::Roughness);
+        let variables = rough.into_iter().chain(quantity.variables.iter().copied());
+        let axes = variables.map(|v| Axis::natural(v, args.size)).collect::<Result<_>>()?;
+        return TablePlan::basis(format!("{}.{}", model.name, quantity.name), quantity, model, None, axes);
+    };
+    let selection = Selection { quantity: args.quantity.clone(), ..Selection::default() };
+    let plan = Plan::new(&scene::read(path)?, &selection)?;
+    let integral = |table: &TablePlan| table.quantity.evaluation != Evaluation::Value;
+    plan.tables.into_iter().find(integral).ok_or_else(|| {
+        Error::input(format!(
+            "{}: no table of integrals; give one of rho_dh, rho_hh or split_sum",
+            path.display()
+        ))
+    })
+}
+
+/// What people read.
+fn lines(trade: &Trade) -> Vec<String> {
+    let mut lines = vec![
+        format!("{HEADING}table{HEADING:#}   {}", trade.table),
+        format!("{HEADING}checked{HEADING:#} {}", trade.subset),
+        format!(
+            "{HEADING}  {:10}  {:>11}  {:>11}  {:>10}  {:>19}  {:>10}  {:>9}  {:>9}  {:>6}{HEADING:#}",
+            "method", "setting", "evaluations", "time", "min – max", "prepare", "max error", "rms", "floor"
+        ),
+    ];
+    lines.extend(trade.points.iter().map(line));
+    if let Some(floor) = &trade.floor {
+        lines.push(format!(
+            "{HEADING}floor{HEADING:#}   the device writes {:.1} GB/s and does {:.1} G products and sums a second; \
+             floor is the share of the time that these need at least",
+            1e-9 * floor.bytes_per_second,
+            1e-9 * floor.operations_per_second
+        ));
+    }
+    lines.extend(trade.headlines.iter().map(|headline| format!("{HEADING}→{HEADING:#} {headline}")));
+    lines
+}
+
+fn line(p: &Point) -> String {
+    let ms = |seconds: f64| format!("{:.2}", 1e3 * seconds);
+    let mark = if p.on_front {
+        '*'
+    } else if p.extrapolated {
+        '~'
+    } else {
+        ' '
+    };
+    // Of what was computed: its spread does not say much of what was not.
+    let scale = p.table_seconds / p.seconds;
+    format!(
+        "{mark} {:10}  {:>11}  {:>11.2e}  {:>7} ms  {:>19}  {:>7} ms  {:>9.1e}  {:>9.1e}  {:>6}",
+        p.method,
+        p.setting,
+        p.evaluations as f64 * if p.extrapolated { scale } else { 1.0 },
+        ms(p.table_seconds),
+        format!("{} – {}", ms(p.seconds_min * scale), ms(p.seconds_max * scale)),
+        ms(p.prepare),
+        p.max_error,
+        p.rms_error,
+        p.floor_share.map_or("–".into(), |share| format!("{:.0} %", 100.0 * share)),
+    )
+}

@@ -1,0 +1,117 @@
+//! Storage: the format that values are rounded to, and what is refused rather than lost.
+
+use crate::table::{ErrorKind, Values};
+use half::f16;
+use serde::Serialize;
+
+/// The format of stored values. Rounding is to the nearest, ties to even.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Storage {
+    /// 32-bit floats.
+    #[default]
+    F32,
+    /// 64-bit floats; worth it where the arithmetic is f64 too.
+    F64,
+    /// 16-bit floats: 11 bits of precision from 2⁻¹⁴ to 65504.
+    F16,
+    /// 16-bit integers over [0, 1]: value = stored / 65535.
+    Unorm16,
+}
+
+/// Rounded values, and how many of them fell below the normal range of halves.
+pub(crate) struct Stored {
+    pub values: Values,
+    pub underflows: usize,
+}
+
+impl Storage {
+    /// All formats.
+    pub const ALL: [Self; 4] = [Self::F32, Self::F64, Self::F16, Self::Unorm16];
+
+    /// The name in recipes and manifests.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+            Self::F16 => "f16",
+            Self::Unorm16 => "unorm16",
+        }
+    }
+
+    /// Bytes of one value.
+    pub fn bytes(self) -> usize {
+        match self {
+            Self::F64 => 8,
+            Self::F32 => 4,
+            Self::F16 | Self::Unorm16 => 2,
+        }
+    }
+
+    /// The bound on what rounding changes a value by: absolute for values up to 1, or relative.
+    pub fn rounding(self, kind: ErrorKind) -> f64 {
+        match (self, kind) {
+            (Self::F64, _) => f64::EPSILON / 2.0,
+            (Self::F32, _) => f64::from(f32::EPSILON) / 2.0,
+            // Half of the spacing: 2⁻¹¹ below 1, and up to 2⁻¹⁰ of the value itself.
+            (Self::F16, ErrorKind::Absolute) => 1.0 / 4096.0,
+            (Self::F16, ErrorKind::Relative) => 1.0 / 2048.0,
+            (Self::Unorm16, ErrorKind::Absolute) => 0.5 / UNORM,
+            // What is near 0 loses all of itself.
+            (Self::Unorm16, ErrorKind::Relative) => 1.0,
+        }
+    }
+
+    /// The same where it counts: rounding to f32 is part of what the arithmetic's error is measured at.
+    pub(crate) fn coarse_rounding(self, kind: ErrorKind) -> f64 {
+        if self.bytes() < Self::F32.bytes() { self.rounding(kind) } else { 0.0 }
+    }
+
+    /// The value that a reader of the stored one gets; infinite or out of [0, 1] where it does not fit.
+    pub fn round(self, value: f64) -> f64 {
+        match self {
+            Self::F64 => value,
+            Self::F32 => f64::from(value as f32),
+            Self::F16 => f16::from_f64(value).to_f64(),
+            Self::Unorm16 => (value * UNORM).round_ties_even() / UNORM,
+        }
+    }
+
+    /// Rounds the values. What does not fit is refused, with a reason: overflow of halves, values
+    /// outside [0, 1] for unorm16, and underflow (a value that is not 0 below 2⁻¹⁴, where halves lose
+    /// their precision) if errors are relative. If they are absolute, underflow costs at most 2⁻²⁵: it
+    /// is counted, and measured with the rest.
+    pub(crate) fn store(self, values: Values, kind: ErrorKind) -> Result<Stored, String> {
+        let count = |test: &dyn Fn(f64) -> bool| values.iter().filter(|&value| test(value)).count();
+        let refuse = |n: usize, what: &str| match n {
+            0 => Ok(()),
+            n => Err(format!("{n} of its {} values {what}; store it as f32", values.len())),
+        };
+        let mut underflows = 0;
+        match self {
+            Self::F32 | Self::F64 => {}
+            Self::F16 => {
+                let overflows = |value: f64| value.is_finite() && self.round(value).is_infinite();
+                refuse(count(&overflows), "overflow half floats, which end at 65504")?;
+                let normal = f16::MIN_POSITIVE.to_f64();
+                underflows = count(&|value| value != 0.0 && self.round(value).abs() < normal);
+                if kind == ErrorKind::Relative {
+                    refuse(underflows, "underflow half floats, which lose precision below 2⁻¹⁴")?;
+                }
+            }
+            Self::Unorm16 => {
+                let outside = |value: f64| !(0.0..=1.0).contains(&self.round(value));
+                refuse(count(&outside), "are outside [0, 1], which is all that unorm16 has")?;
+            }
+        }
+        let values = match (self, values) {
+            (Self::F64, values) => Values::F64(values.iter().collect()),
+            (Self::F32, values) => Values::F32(values.to_f32().into_owned()),
+            (_, values) => Values::F32(values.iter().map(|value| self.round(value) as f32).collect()),
+        };
+        Ok(Stored { values, underflows })
+    }
+}
+
+/// The largest stored integer of unorm16.
+pub(crate) const UNORM: f64 = 65535.0;
