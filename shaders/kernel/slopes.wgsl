@@ -6,18 +6,15 @@
 @group(0) @binding(2) var<storage, read> mus: array<real>;
 @group(0) @binding(3) var<storage, read> columns: array<vec4u>;         // first azimuth and count, for each side
 @group(0) @binding(4) var<storage, read> tiles: array<vec4u>;           // first node and count, for each side
-@group(0) @binding(5) var<storage, read> azimuths: array<SlopeAzimuth>;
-@group(0) @binding(6) var<storage, read> nodes: array<real2>;           // (r in [0, 1], weight)
 @group(0) @binding(7) var<storage, read_write> raw: array<real2>;
 
 const TILE_COLUMNS = 8u;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    let invocation = job.first + id.x;
-    if invocation >= job.end {
-        return;
-    }
+    // What is beyond the end does the last one's work again: an early return would make software
+    // drivers mask every instruction.
+    let invocation = min(job.first + id.x, job.end - 1u);
     let column = invocation % job.columns;
     let row = invocation / job.columns;
     let alpha = alphas[row];
@@ -29,9 +26,17 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let far = side(azimuth.z, azimuth.w, tile.z, tile.w, e, alpha);
     let grazing = near.grazing + far.grazing;
     let rest = near.all + far.all - grazing;
-    for (var k = 0u; k < min(4u, job.nodes - 4u * row); k++) {
-        let result = select(real2(rest[k], grazing[k]), mirror_limit(mu), alpha[k] == 0.0);
-        raw[(4u * row + k) * job.columns + column - job.base] = result;
+    let mirror = mirror_limit(mu);
+    put(4u * row, column, select(real2(rest.x, grazing.x), mirror, alpha.x == 0.0));
+    put(4u * row + 1u, column, select(real2(rest.y, grazing.y), mirror, alpha.y == 0.0));
+    put(4u * row + 2u, column, select(real2(rest.z, grazing.z), mirror, alpha.z == 0.0));
+    put(4u * row + 3u, column, select(real2(rest.w, grazing.w), mirror, alpha.w == 0.0));
+}
+
+/// One result; the last four may be fewer.
+fn put(row: u32, column: u32, result: real2) {
+    if row < job.nodes {
+        raw[row * job.columns + column - job.base] = result;
     }
 }
 

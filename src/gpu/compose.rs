@@ -18,6 +18,8 @@ pub enum Kernel {
     AddValues,
     /// Integrals in slopes.
     Slopes,
+    /// The same where azimuths or nodes do not fit a uniform binding.
+    SlopesOfMany,
     /// Integrals over (θe, δφ).
     Product,
     /// Integrals by sampling the distribution of normals.
@@ -36,6 +38,11 @@ pub enum Kernel {
     Fill,
     /// Nothing but arithmetic.
     MultiplyAdd,
+}
+
+/// Vectors of four that fit a uniform binding of 64 KiB, which every device has.
+pub(super) fn vectors(precision: Precision) -> usize {
+    (1 << 16) / (4 * precision.bytes())
 }
 
 macro_rules! shader {
@@ -59,6 +66,9 @@ pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize, precision
     // One source for both: no kernel calls a transcendental built-in, which f64 lacks.
     let real = precision.name();
     let mut source = format!("alias real = {real};\nalias real2 = vec2<real>;\nalias real4 = vec4<real>;\n");
+    if matches!(kernel, Kernel::Slopes | Kernel::SlopesOfMany) {
+        source += &format!("const VECTORS = {}u;\n", vectors(precision));
+    }
     let mut add = |name: &str, wgsl: &str| source.push_str(&format!("\n// ---- {name}\n{wgsl}"));
     add("kernel/job", shader!("kernel/job"));
     if let Some(model) = model {
@@ -100,7 +110,14 @@ pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize, precision
             add("sampling/random", shader!("sampling/random"));
         }
         Kernel::Values | Kernel::AddValues => add("kernel/values", shader!("kernel/values")),
-        Kernel::Slopes => add("kernel/slopes", shader!("kernel/slopes")),
+        Kernel::Slopes => {
+            add("kernel/slopes_uniform", shader!("kernel/slopes_uniform"));
+            add("kernel/slopes", shader!("kernel/slopes"));
+        }
+        Kernel::SlopesOfMany => {
+            add("kernel/slopes_storage", shader!("kernel/slopes_storage"));
+            add("kernel/slopes", shader!("kernel/slopes"));
+        }
         Kernel::Product => add("kernel/product", shader!("kernel/product")),
         Kernel::Analytic => add("kernel/analytic", shader!("kernel/analytic")),
         Kernel::Sum => add("kernel/sum", shader!("kernel/sum")),

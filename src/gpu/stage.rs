@@ -1,7 +1,7 @@
 //! The work of one lobe, uploaded: f64 factors rounded to the kernels' precision, as they lay them out.
 
 use super::baker::{Baker, count};
-use super::compose::{Kernel, VALUE_WINDOW};
+use super::compose::{Kernel, VALUE_WINDOW, vectors};
 use crate::error::Result;
 use crate::models::{ALPHA_MIN_INTEGRAL, Model};
 use crate::pair::{Azimuth, Pair};
@@ -144,16 +144,22 @@ impl Stage {
                 let pair = |[a, b]: [Range<usize>; 2]| [a.start, a.len(), b.start, b.len()].map(|n| n as u32);
                 let columns: Vec<_> = work.columns.iter().cloned().map(pair).collect();
                 let tiles: Vec<_> = work.tiles().map(pair).collect();
-                let nodes: Vec<_> = work.nodes.iter().map(|node| [node.x, node.weight]).collect();
+                let nodes: Vec<_> = work.nodes.iter().map(|node| [node.x, node.weight, 0.0, 0.0]).collect();
+                let most = vectors(upload.precision);
+                let many = work.azimuths.len().max(nodes.len()) > most;
+                let table = |vectors: &[[f64; 4]]| match many {
+                    true => upload.reals(vectors.as_flattened()),
+                    false => upload.uniforms(vectors, most),
+                };
                 let inputs = vec![
                     upload.reals(&alphas),
                     upload.reals(&work.mus),
                     upload.input(&columns),
                     upload.input(&tiles),
-                    upload.reals(work.azimuths.as_flattened()),
-                    upload.reals(nodes.as_flattened()),
+                    table(&work.azimuths),
+                    table(&nodes),
                 ];
-                (Kernel::Slopes, 0, rows, inputs)
+                (if many { Kernel::SlopesOfMany } else { Kernel::Slopes }, 0, rows, inputs)
             }
             Inner::Product { pairs, azimuths } => {
                 let inputs = vec![upload.reals(alphas), upload.pairs(pairs), upload.azimuths(azimuths)];
@@ -230,6 +236,20 @@ impl Upload<'_> {
         match self.precision {
             Precision::F32 => self.input(&values.iter().map(|&x| x as f32).collect::<Vec<_>>()),
             Precision::F64 => self.input(values),
+        }
+    }
+
+    /// A uniform array of so many vectors, the rest of them 0.
+    fn uniforms(&self, vectors: &[[f64; 4]], length: usize) -> wgpu::Buffer {
+        let mut vectors = vectors.to_vec();
+        vectors.resize(length, [0.0; 4]);
+        let usage = wgpu::BufferUsages::UNIFORM;
+        match self.precision {
+            Precision::F32 => {
+                let vectors: Vec<_> = vectors.iter().map(|v| v.map(|x| x as f32)).collect();
+                self.baker.init(bytemuck::cast_slice(&vectors), usage)
+            }
+            Precision::F64 => self.baker.init(bytemuck::cast_slice(&vectors), usage),
         }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! Tabulated, not fitted: the integrand is analytic, but what limits its convergence changes over
 //! (μ, α). The table was made by `print_the_error_model` below, from the f64 twin: for each bin the
-//! least counts such that these and all larger ones keep the rule's error below a third of the
+//! least counts such that these and all larger ones keep the rule's error below a quarter of the
 //! tolerance, everywhere in the bin, for each of the four counts on its own.
 
 use crate::models::decade;
@@ -93,7 +93,7 @@ mod tests {
             let [a, b] = of(n);
             let error = (a - exact[0]).abs().max((b - exact[1]).abs());
             for (decade, needed) in needed.iter_mut().enumerate() {
-                if error > 10f64.powi(-1 - decade as i32) / 3.0 {
+                if error > 10f64.powi(-1 - decade as i32) / 4.0 {
                     *needed = n as u8 + 1;
                 }
             }
@@ -115,7 +115,7 @@ mod tests {
         let span = |edges: &[f64], k: usize, smallest: f64| {
             let low = edges[k];
             let high = edges.get(k + 1).copied().unwrap_or(-smallest.log2());
-            const SAMPLES: usize = 4;
+            const SAMPLES: usize = 6;
             (0..=SAMPLES).map(move |i| 2f64.powf(-(low + (high - low) * i as f64 / SAMPLES as f64)))
         };
         let bins: Vec<_> = (0..100).collect();
