@@ -46,9 +46,9 @@ impl SlopeWork {
             .collect();
         let largest = tiles.as_flattened().iter().copied().max().unwrap_or(0);
         let (mut nodes, mut rules) = (Vec::new(), vec![0..0; largest + 1]);
-        for n in 0..=largest {
+        for (n, rule) in rules.iter_mut().enumerate() {
             if tiles.as_flattened().contains(&n) {
-                rules[n] = nodes.len()..nodes.len() + n;
+                *rule = nodes.len()..nodes.len() + n;
                 nodes.extend(gauss_legendre(n));
             }
         }

@@ -150,9 +150,8 @@ mod tests {
         println!("#[rustfmt::skip]\nconst COUNTS: [[[[u8; 4]; 10]; 10]; DECADES] = [");
         for decade in 0..DECADES {
             println!("    [ // 1e-{}", decade + 1);
-            for mu in 0..10 {
-                let row: Vec<_> =
-                    (0..10).map(|alpha| format!("{:?}", table[10 * mu + alpha][decade])).collect();
+            for mu in table.chunks(10) {
+                let row: Vec<_> = mu.iter().map(|alpha| format!("{:?}", alpha[decade])).collect();
                 println!("        [{}],", row.join(", "));
             }
             println!("    ],");
