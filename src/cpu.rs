@@ -1,12 +1,10 @@
 //! The CPU path: the same rules as the kernels, in f64, on all cores.
 
-use crate::axis::Axis;
 use crate::models::ALPHA_MIN_INTEGRAL;
 use crate::plan::{Lobe, TablePlan};
 use crate::slopes::{TILE_ALPHAS, TILE_COLUMNS};
 use crate::work::{Inner, Work, WorkKind};
 use rayon::prelude::*;
-use std::ops::Range;
 
 /// The values of a table, row-major, channels last.
 ///
@@ -48,12 +46,13 @@ pub(crate) fn evaluate<E: Send>(
 
 /// The values of some rows of a table of values at a time (a row is all azimuths of an α and a pair):
 /// `sink` gets each of `tiles` in order.
+#[cfg(feature = "files")]
 pub(crate) fn stream(
     table: &TablePlan,
-    tiles: &[Range<usize>],
+    tiles: &[std::ops::Range<usize>],
     sink: &mut dyn FnMut(usize, &[f32]) -> crate::Result<()>,
 ) -> crate::Result<()> {
-    let row = table.axes.last().map_or(1, Axis::len) * table.channels.len();
+    let row = table.axes.last().map_or(1, |axis| axis.len()) * table.channels.len();
     let works: Vec<_> = table.lobes.iter().map(|lobe| (lobe, Work::new(table, lobe))).collect();
     for (k, tile) in tiles.iter().enumerate() {
         let mut sums = vec![0.0; tile.len() * row];

@@ -103,6 +103,7 @@ impl Values {
     }
 
     /// Drops them and keeps their room.
+    #[cfg(feature = "files")]
     pub(crate) fn clear(&mut self) {
         match self {
             Self::F32(values) => values.clear(),

@@ -43,6 +43,7 @@ pub struct Device {
     pub(crate) baker: Baker,
     /// What wgpu says of its adapter.
     pub info: wgpu::AdapterInfo,
+    #[cfg(feature = "files")]
     adapter: Adapter,
     fault: Arc<Mutex<Option<String>>>,
 }
@@ -111,6 +112,7 @@ impl Adapter {
         Ok(Device {
             baker: Baker::new(&device, &queue),
             info: self.info.clone(),
+            #[cfg(feature = "files")]
             adapter: self.clone(),
             fault,
         })
@@ -172,6 +174,7 @@ impl Device {
     }
 
     /// A new device on the same adapter, after this one was lost.
+    #[cfg(feature = "files")]
     pub(crate) fn reopen(&self) -> Result<Self> {
         self.adapter.open()
     }
