@@ -10,7 +10,7 @@ struct Pair {
     mu_i: real,   // cos θi
     mu_e: real,   // cos θe
     bin: real,    // 1 / weight of this θe cell where it holds the mirror direction, else 0
-    pad: real,
+    alpha: real,  // of a row of values, else unused
 }
 
 struct Azimuth {

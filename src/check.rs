@@ -8,6 +8,7 @@ use crate::reference::Angles;
 use crate::table::{ErrorKind, TableError, Values, indices};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 /// How many texels of a table to compare.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,57 +49,107 @@ pub fn cross_check(
     estimate: Option<f64>,
     tick: &(impl Fn(f64) -> Result<()> + Sync),
 ) -> Result<TableError> {
-    let texels = match check {
-        Check::All => (0..table.texels()).collect(),
-        Check::Sample(n) => sample(&table.shape(), n),
-    };
-    let floor = (table.quantity.error == ErrorKind::Relative).then_some(VALUE_FLOOR);
-    let mut error = TableError {
-        kind: table.quantity.error,
-        floor,
-        estimate,
-        measured_max: None,
-        measured_rms: None,
-        texels_checked: 0,
-        underflows: None,
-        interpolation: None,
-        worst: BTreeMap::new(),
-    };
-    let known = table.lobes.iter().all(|lobe| lobe.model.reference.is_some());
-    if texels.is_empty() || !known {
-        return Ok(error);
+    let mut comparison = Comparison::new(table, check, estimate);
+    comparison.add(0..table.texels(), &|k| values.get(k), tick)?;
+    Ok(comparison.finish())
+}
+
+/// A comparison that sees a table piece by piece, in order: the same texels, the same sums and so the
+/// same error as of the whole.
+pub(crate) struct Comparison<'a> {
+    table: &'a TablePlan,
+    /// The texels to compare, sorted; `None`: all of them.
+    sample: Option<Vec<usize>>,
+    error: TableError,
+    squares: f64,
+    compared: usize,
+}
+
+impl<'a> Comparison<'a> {
+    pub fn new(table: &'a TablePlan, check: Check, estimate: Option<f64>) -> Self {
+        let known = table.lobes.iter().all(|lobe| lobe.model.reference.is_some());
+        let sample = match check {
+            _ if !known => Some(Vec::new()),
+            Check::All => None,
+            Check::Sample(n) => Some(sample(&table.shape(), n)),
+        };
+        let error = TableError {
+            kind: table.quantity.error,
+            floor: (table.quantity.error == ErrorKind::Relative).then_some(VALUE_FLOOR),
+            estimate,
+            measured_max: None,
+            measured_rms: None,
+            texels_checked: 0,
+            underflows: None,
+            interpolation: None,
+            worst: BTreeMap::new(),
+        };
+        Self { table, sample, error, squares: 0.0, compared: 0 }
     }
-    let channels = table.channels.len();
-    let share = 1.0 / texels.len() as f64;
-    let found = texels
-        .par_iter()
-        .map(|&texel| {
-            let truth = reference(table, texel);
-            let differences = truth.iter().enumerate().map(|(channel, &truth)| {
-                let difference = (values.get(texel * channels + channel) - truth).abs();
-                let difference = floor.map_or(difference, |floor| difference / truth.max(floor));
-                if difference.is_nan() { f64::INFINITY } else { difference }
-            });
-            let found: Vec<_> =
-                differences.zip(truth.iter().copied()).map(|(d, truth)| (d, truth, texel)).collect();
-            tick(share)?;
-            Ok(found)
-        })
-        .collect::<Result<Vec<_>>>()?;
-    let found: Vec<_> = found.into_iter().flat_map(|texel| texel.into_iter().enumerate()).collect();
-    let squares: f64 = found.iter().map(|(_, (d, ..))| d * d).sum();
-    let worst = found.iter().max_by(|x, y| x.1.0.total_cmp(&y.1.0));
-    if let Some(&(channel, (largest, truth, texel))) = worst {
-        error.measured_max = Some(largest);
-        error.measured_rms = Some((squares / found.len() as f64).sqrt());
-        error.texels_checked = texels.len();
-        let coordinates = table.axes.iter().zip(indices(&table.shape(), texel));
-        error.worst = coordinates.map(|(axis, k)| (axis.variable.name().into(), axis.values[k])).collect();
-        error.worst.insert("channel".into(), channel as f64);
-        error.worst.insert("value".into(), values.get(texel * channels + channel));
-        error.worst.insert("reference".into(), truth);
+
+    /// Compares the texels `piece`, whose values `value` gives, from 0. The next piece must begin where it
+    /// ends.
+    pub fn add(
+        &mut self,
+        piece: Range<usize>,
+        value: &(impl Fn(usize) -> f64 + Sync),
+        tick: &(impl Fn(f64) -> Result<()> + Sync),
+    ) -> Result<()> {
+        let (table, floor) = (self.table, self.error.floor);
+        let channels = table.channels.len();
+        let (texels, all): (Vec<_>, _) = match &self.sample {
+            None => (piece.clone().collect(), table.texels()),
+            Some(sample) => {
+                let at = |texel| sample.partition_point(|&t| t < texel);
+                (sample[at(piece.start)..at(piece.end)].to_vec(), sample.len())
+            }
+        };
+        let share = 1.0 / all as f64;
+        let found = texels
+            .par_iter()
+            .map(|&texel| {
+                let truth = reference(table, texel);
+                let values = ((texel - piece.start) * channels..).map(value);
+                let found: Vec<_> = truth
+                    .into_iter()
+                    .zip(values)
+                    .map(|(truth, value)| {
+                        let difference = (value - truth).abs();
+                        let difference = floor.map_or(difference, |floor| difference / truth.max(floor));
+                        (if difference.is_nan() { f64::INFINITY } else { difference }, truth, value)
+                    })
+                    .collect();
+                tick(share)?;
+                Ok((texel, found))
+            })
+            .collect::<Result<Vec<_>>>()?;
+        for (texel, found) in found {
+            self.error.texels_checked += 1;
+            for (channel, (difference, truth, value)) in found.into_iter().enumerate() {
+                self.squares += difference * difference;
+                self.compared += 1;
+                if self.error.measured_max.is_none_or(|max| difference >= max) {
+                    self.error.measured_max = Some(difference);
+                    let coordinates = table.axes.iter().zip(indices(&table.shape(), texel));
+                    let worst = &mut self.error.worst;
+                    *worst =
+                        coordinates.map(|(axis, k)| (axis.variable.name().into(), axis.values[k])).collect();
+                    worst.insert("channel".into(), channel as f64);
+                    worst.insert("value".into(), value);
+                    worst.insert("reference".into(), truth);
+                }
+            }
+        }
+        Ok(())
     }
-    Ok(error)
+
+    /// The error of all that was added.
+    pub fn finish(mut self) -> TableError {
+        if self.compared > 0 {
+            self.error.measured_rms = Some((self.squares / self.compared as f64).sqrt());
+        }
+        self.error
+    }
 }
 
 /// The reference's channels of one texel. NaN where the reference has no value.

@@ -22,10 +22,7 @@ pub(crate) fn evaluate<E: Send>(
             WorkKind::Values { pairs, azimuths } => {
                 let rows = work.alphas.len() * pairs.len();
                 sums.par_chunks_mut(azimuths.len() * channels).enumerate().try_for_each(|(row, out)| {
-                    let (alpha, pair) = (work.alphas[row / pairs.len()], &pairs[row % pairs.len()]);
-                    for (azimuth, out) in azimuths.iter().zip(out.chunks_mut(channels)) {
-                        add(out, lobe, (lobe.model.lobe)(pair, azimuth, alpha));
-                    }
+                    add_row(out, lobe, &work, row);
                     tick(share / rows as f64)
                 })?;
             }
@@ -45,6 +42,35 @@ pub(crate) fn evaluate<E: Send>(
         }
     }
     Ok(sums)
+}
+
+/// The values of some rows of a table of values at a time (a row is all azimuths of an α and a pair):
+/// `sink` gets each of `tiles` in order.
+#[cfg(feature = "files")]
+pub(crate) fn stream(
+    table: &TablePlan,
+    tiles: &[std::ops::Range<usize>],
+    sink: &mut dyn FnMut(usize, &[f32]) -> crate::Result<()>,
+) -> crate::Result<()> {
+    let row = table.axes.last().map_or(1, |axis| axis.len()) * table.channels.len();
+    let works: Vec<_> = table.lobes.iter().map(|lobe| (lobe, Work::new(table, lobe))).collect();
+    for (k, tile) in tiles.iter().enumerate() {
+        let mut sums = vec![0.0; tile.len() * row];
+        sums.par_chunks_mut(row).zip(tile.clone()).for_each(|(out, row)| {
+            works.iter().for_each(|(lobe, work)| add_row(out, lobe, work, row));
+        });
+        let values: Vec<_> = sums.into_iter().map(|x| x as f32).collect();
+        sink(k, &values)?;
+    }
+    Ok(())
+}
+
+fn add_row(out: &mut [f64], lobe: &Lobe, work: &Work, row: usize) {
+    let WorkKind::Values { pairs, azimuths } = &work.kind else { return };
+    let (alpha, pair) = (work.alphas[row / pairs.len()], &pairs[row % pairs.len()]);
+    for (azimuth, out) in azimuths.iter().zip(out.chunks_mut(lobe.weights.len())) {
+        add(out, lobe, (lobe.model.lobe)(pair, azimuth, alpha));
+    }
 }
 
 fn add(out: &mut [f64], lobe: &Lobe, [a, b]: [f64; 2]) {

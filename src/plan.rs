@@ -252,8 +252,17 @@ impl TablePlan {
         }
         // Counts multiply beyond any usize.
         let values = self.axes.iter().try_fold(self.channels.len(), |n, axis| n.checked_mul(axis.len()));
-        if values.is_none_or(|n| n > MAX_VALUES) {
-            return refuse(format!("it has more than {MAX_VALUES} values; take fewer samples"));
+        let streams = self.can_stream();
+        let most = if streams { MAX_STREAMED } else { MAX_VALUES };
+        if values.is_none_or(|n| n > most) {
+            let value = self.quantity.evaluation == Evaluation::Value;
+            let more = match value && !streams {
+                true => {
+                    format!(", or store it as f32, to {VALUE_F32:.1e} or more: then it need not fit memory")
+                }
+                false => String::new(),
+            };
+            return refuse(format!("it has more than {most} values; take fewer samples{more}"));
         }
         let factors = self.factors();
         if factors > MAX_FACTORS {
@@ -337,6 +346,25 @@ impl TablePlan {
         }
     }
 
+    /// Whether it can be baked and written piece by piece: values, in f32 throughout.
+    pub(crate) fn can_stream(&self) -> bool {
+        self.quantity.evaluation == Evaluation::Value
+            && self.precision() == Precision::F32
+            && self.stored() == Storage::F32
+    }
+
+    /// Refuses what is too large for one piece.
+    pub(crate) fn check_fits_memory(&self) -> Result<()> {
+        if self.texels() * self.channels.len() <= MAX_VALUES {
+            return Ok(());
+        }
+        Err(Error::input(format!(
+            "table \"{}\": it has more than {MAX_VALUES} values, too many for one piece; take fewer samples, or \
+             bake it as part of a set, which streams values in f32",
+            self.name
+        )))
+    }
+
     /// Samples along each axis, slowest first.
     pub fn shape(&self) -> Vec<usize> {
         self.axes.iter().map(Axis::len).collect()
@@ -397,8 +425,12 @@ pub(crate) const UNORM_RULE: f64 = 0.25 / UNORM;
 /// The tolerance where nobody names one.
 pub const DEFAULT_TOLERANCE: f64 = 1e-4;
 
-/// The most values of a table: 1 GiB as stored, and 2 more in f64 on the CPU path.
+/// The most values of a table in one piece: 1 GiB in f32, and 2 more in f64.
 const MAX_VALUES: usize = 1 << 28;
+
+/// The most values of a table that streams, so need not fit memory: 32 GiB as stored, and the device
+/// counts its quads in 32 bits.
+const MAX_STREAMED: usize = 1 << 33;
 
 /// The most factors of a table: 32 bytes each in the 128 MiB that every device binds.
 const MAX_FACTORS: usize = 1 << 22;

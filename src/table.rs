@@ -8,6 +8,7 @@ use crate::storage::Storage;
 use serde::Serialize;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::fmt::Display;
 
 /// A baked table: `quantity × axes × subject`, row-major, the channels last.
 #[derive(Debug, Clone, PartialEq)]
@@ -99,6 +100,15 @@ impl Values {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// Drops them and keeps their room.
+    #[cfg(feature = "files")]
+    pub(crate) fn clear(&mut self) {
+        match self {
+            Self::F32(values) => values.clear(),
+            Self::F64(values) => values.clear(),
+        }
     }
 
     /// One of them; both kinds fit f64.
@@ -199,13 +209,25 @@ impl Table {
     /// Refuses a table with a value that is not finite or is negative: the device may not say so
     /// itself (WGSL lets an implementation assume that NaN does not occur), so the host looks.
     pub fn check_sane(&self) -> Result<()> {
+        match &self.values {
+            Values::F32(values) => self.check_sane_from(0, values),
+            Values::F64(values) => self.check_sane_from(0, values),
+        }
+    }
+
+    /// The same of a part of its values, which begin at a texel.
+    pub(crate) fn check_sane_from<T>(&self, texel: usize, values: &[T]) -> Result<()>
+    where
+        T: Copy + Into<f64> + Display,
+    {
         let channels = self.channels.len();
-        let Some(at) = self.values.iter().position(|v| !v.is_finite() || v < 0.0) else { return Ok(()) };
+        let insane = |&v: &T| !v.into().is_finite() || v.into() < 0.0;
+        let Some(at) = values.iter().position(insane) else { return Ok(()) };
         Err(Error::Promise(format!(
             "table {}: {} at {}; a BRDF is finite and non-negative",
             self.name,
-            self.values.show(at),
-            self.place(at / channels),
+            values[at],
+            self.place(texel + at / channels),
         )))
     }
 

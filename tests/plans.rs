@@ -59,9 +59,11 @@ fn a_module_holds_one_kernel_and_its_model() {
 fn every_shader_is_portable() {
     for model in MODELS {
         let kernels: &[Kernel] = match model.name {
-            "ggx" => &[Kernel::Values, Kernel::Product, Kernel::Slopes, Kernel::SlopesOfMany],
+            "ggx" => {
+                &[Kernel::Values, Kernel::AddValues, Kernel::Product, Kernel::Slopes, Kernel::SlopesOfMany]
+            }
             "mirror" => &[Kernel::Product, Kernel::Analytic],
-            _ => &[Kernel::Values, Kernel::Product],
+            _ => &[Kernel::Values, Kernel::AddValues, Kernel::Product],
         };
         for &kernel in kernels {
             for channels in 1..=3 {

@@ -1,32 +1,36 @@
 // Values of a BRDF over (roughness, θi, θe, δφ): four azimuths an invocation, no trigonometry, wide
-// stores. Rows are padded to whole quads.
+// stores. Rows are padded to whole quads. A dispatch takes a window of rows and quads that fits uniform
+// buffers: those are half the price of storage buffers on the CPU.
 
-@group(0) @binding(1) var<storage, read> alphas: array<real>;
-@group(0) @binding(2) var<storage, read> pairs: array<Pair>;
-@group(0) @binding(3) var<storage, read> azimuths: array<Azimuth>;
-@group(0) @binding(4) var<storage, read_write> values: array<vec4f>;
+struct Quad {
+    sin2: real4, // sin²(δ/2)
+    cos2: real4, // cos²(δ/2)
+}
+
+@group(0) @binding(1) var<uniform> rows: array<Pair, WINDOW>;
+@group(0) @binding(2) var<uniform> quads: array<Quad, WINDOW>;
+@group(0) @binding(3) var<storage, read_write> values: array<vec4f>;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    let invocation = job.first + id.x;
-    if invocation >= job.end {
+    if ADD && id.x >= job.end {
         return;
     }
-    let quads = (job.azimuths + 3u) / 4u;
-    let row = invocation / quads;
-    let quad = invocation % quads;
-    let pair = pairs[row % job.columns];
-    let alpha = alphas[row / job.columns];
-    let last = job.azimuths - 1u;
-    let a0 = lobe(pair, azimuths[4u * quad], alpha);
-    let a1 = lobe(pair, azimuths[min(4u * quad + 1u, last)], alpha);
-    let a2 = lobe(pair, azimuths[min(4u * quad + 2u, last)], alpha);
-    let a3 = lobe(pair, azimuths[min(4u * quad + 3u, last)], alpha);
-    store((invocation - job.base) * CHANNELS, a0, a1, a2, a3);
+    // What is beyond the end does the last one over again: cheaper than a mask on every store.
+    let invocation = min(id.x, job.end - 1u);
+    let row = invocation / job.columns;
+    let quad = invocation % job.columns;
+    let pair = rows[row];
+    let z = quads[quad];
+    let a0 = lobe(pair, Azimuth(z.sin2.x, z.cos2.x, 0.0, 0.0), pair.alpha);
+    let a1 = lobe(pair, Azimuth(z.sin2.y, z.cos2.y, 0.0, 0.0), pair.alpha);
+    let a2 = lobe(pair, Azimuth(z.sin2.z, z.cos2.z, 0.0, 0.0), pair.alpha);
+    let a3 = lobe(pair, Azimuth(z.sin2.w, z.cos2.w, 0.0, 0.0), pair.alpha);
+    store(((job.first + row) * job.azimuths + job.nodes + quad) * CHANNELS, a0, a1, a2, a3);
 }
 
 fn put(at: u32, v: vec4f) {
-    if job.accumulate == 1u {
+    if ADD {
         values[at] += v;
     } else {
         values[at] = v;

@@ -2,9 +2,13 @@
 
 #[cfg(feature = "files")]
 mod set;
+#[cfg(feature = "files")]
+mod stream;
 
 #[cfg(feature = "files")]
 pub use set::{Baked, Options, bake_set};
+#[cfg(feature = "files")]
+pub use stream::{Progress, Streaming};
 
 use crate::check::{Check, cross_check};
 use crate::cpu;
@@ -14,7 +18,7 @@ use crate::interpolation;
 use crate::plan::{Precision, Rule, STORED_F32, TablePlan, VALUE_F32};
 use crate::quantity::Evaluation;
 use crate::storage::{Storage, Stored};
-use crate::table::{Table, Values};
+use crate::table::{Table, TableError, Values};
 use serde::Serialize;
 use std::time::Instant;
 
@@ -92,6 +96,7 @@ impl Evaluator {
         stages: &mut Stages,
         observer: &dyn Observer,
     ) -> Result<Table> {
+        plan.check_fits_memory()?;
         observer.begin(&format!("baking {}", plan.name));
         let tick = |share| observer.advance(share);
         let before = stages.dispatch + stages.readback;
@@ -117,7 +122,16 @@ impl Evaluator {
         error.underflows = (plan.storage == Storage::F16).then_some(underflows);
         error.interpolation = interpolation::measure(plan, &values, check)?;
         stages.check += start.elapsed().as_secs_f64();
-        let table = Table {
+        let table = self.table(plan, values, error, seconds);
+        table.check_sane()?;
+        check_energy(plan, &table)?;
+        Ok(table)
+    }
+
+    /// The table of a plan, with what was found.
+    fn table(&self, plan: &TablePlan, values: Values, error: TableError, seconds: f64) -> Table {
+        let path = self.path(plan);
+        Table {
             name: plan.name.clone(),
             quantity: plan.quantity.name.into(),
             unit: plan.quantity.unit.into(),
@@ -132,10 +146,7 @@ impl Evaluator {
             precision: path.name().into(),
             error,
             seconds,
-        };
-        table.check_sane()?;
-        check_energy(plan, &table)?;
-        Ok(table)
+        }
     }
 
     /// How a plan is carried out here: f64 where its tolerance asks for it, and the CPU where the device

@@ -1,13 +1,15 @@
 //! Bakes everything that a plan asks for into a folder, with its manifest, all or nothing.
 
+use super::stream::{self, Progress, Streaming};
 use super::{Evaluator, Observer, Stages, within_tolerance};
 use crate::check::Check;
 use crate::error::{Error, Result};
 use crate::files::{self, Files, Format, Provenance, TableEntry, TableSet};
-use crate::plan::{Basis, MaterialPlan, Plan};
+use crate::plan::{Basis, MaterialPlan, Plan, TablePlan};
 use crate::scene::LeftOut;
 use crate::table::Table;
 use serde::Serialize;
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::time::Instant;
 
@@ -18,6 +20,8 @@ pub struct Options {
     pub formats: Vec<Format>,
     /// How many texels of each table to compare with the reference.
     pub check: Check,
+    /// Which tables are written piece by piece.
+    pub streaming: Streaming,
 }
 
 /// What `manifest.json` says.
@@ -62,12 +66,14 @@ struct Requirements<'a> {
 /// What became of a plan.
 #[derive(Debug)]
 pub struct Baked {
-    /// The tables, in the plan's order.
+    /// The tables, in the plan's order. Those that were streamed come without their values.
     pub tables: Vec<Table>,
     /// Their files.
     pub files: Vec<Files>,
     /// The plan's warnings, and what the tables themselves give reason to say.
     pub warnings: Vec<String>,
+    /// Tiles of streamed tables, and how many of them an earlier bake that was cut off had finished.
+    pub tiles: Progress,
     /// Where the time went.
     pub stages: Stages,
     /// The manifest as it was written.
@@ -97,8 +103,57 @@ pub fn bake_set(
     ]);
     let mut set = TableSet::create(dir)?;
     let (mut tables, mut written, mut misses) = (Vec::new(), Vec::new(), Vec::new());
+    let streams = |table: &&TablePlan| options.streaming.takes(table);
+    let key =
+        |table: &TablePlan| stream::key(table, &scene.sha256, &provenance["device"], &options.streaming);
+    let keys: BTreeSet<_> = plan.tables.iter().filter(streams).map(key).collect();
+    let mut progress = Progress::default();
+    // A device that is lost is opened once more.
+    let mut spare = None;
     for table_plan in &plan.tables {
-        let table = evaluator.bake(table_plan, options.check, &mut stages, observer)?;
+        if streams(&table_plan) {
+            let tiles = set.tiles(&keys, &key(table_plan))?;
+            let streamed = stream::bake(
+                evaluator,
+                &mut spare,
+                table_plan,
+                &tiles,
+                options,
+                &mut progress,
+                &mut stages,
+                observer,
+            );
+            let (table, preview) = streamed.inspect_err(|error| {
+                if matches!(error, Error::Promise(_)) {
+                    let _ = set.discard_tiles(); // the same tiles would break the promise again
+                }
+            })?;
+            if let Err(miss) = within_tolerance(table_plan, &table) {
+                misses.push(miss.to_string());
+            }
+            if misses.is_empty() {
+                observer.begin(&format!("writing {}", table.name));
+                let start = Instant::now();
+                let tick = &mut |share| observer.advance(share);
+                written.push(set.write_streamed(
+                    &table,
+                    &tiles,
+                    &preview,
+                    &options.formats,
+                    &provenance,
+                    tick,
+                )?);
+                stages.write += start.elapsed().as_secs_f64();
+            }
+            tables.push(table);
+            continue;
+        }
+        let bake =
+            |now: &Evaluator, stages: &mut Stages| now.bake(table_plan, options.check, stages, observer);
+        let table = match bake(spare.as_ref().unwrap_or(evaluator), &mut stages) {
+            Err(Error::Device(_)) if spare.is_none() => bake(spare.insert(evaluator.reopen()?), &mut stages),
+            result => result,
+        }?;
         if let Err(miss) = within_tolerance(table_plan, &table) {
             misses.push(miss.to_string());
         }
@@ -110,6 +165,7 @@ pub fn bake_set(
         tables.push(table);
     }
     if !misses.is_empty() {
+        set.discard_tiles()?;
         misses.push(format!("{}: left as it was", dir.display()));
         return Err(Error::Promise(misses.join("\n")));
     }
@@ -131,7 +187,7 @@ pub fn bake_set(
     })
     .map_err(|e| Error::Internal(format!("manifest: {e}")))?;
     set.commit(&manifest)?;
-    Ok(Baked { tables, files: written, warnings, stages, manifest })
+    Ok(Baked { tables, files: written, warnings, tiles: progress, stages, manifest })
 }
 
 /// A material whose format lets it reflect more than it receives says so.

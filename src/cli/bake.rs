@@ -2,7 +2,7 @@
 
 use super::watch::Watch;
 use super::{HEADING, print, print_json, tell, warn};
-use crate::bake::{Baked, Evaluator, Options, Stages, bake_set};
+use crate::bake::{Baked, Evaluator, Options, Stages, Streaming, bake_set};
 use crate::check::Check;
 use crate::error::{Error, Result};
 use crate::files::Format;
@@ -109,12 +109,18 @@ pub fn run(args: &Args) -> Result<()> {
     let watch = Watch::new(2 * plan.tables.len());
     let mut formats = args.format.clone();
     formats.dedup();
-    let options = Options { formats, check: args.check };
+    let options = Options { formats, check: args.check, streaming: Streaming::default() };
     let baked = bake_set(&plan, &args.scene, &evaluator, out, &options, stages, &watch);
     watch.finish();
     let baked = baked?;
     baked.warnings[plan.warnings.len()..].iter().for_each(|w| warn(w));
     summary(&say, &plan, &baked)?;
+    if baked.tiles.found > 0 {
+        say.line(&format!(
+            "{} of {} tiles were there from an earlier bake",
+            baked.tiles.found, baked.tiles.all
+        ))?;
+    }
     say.line(&format!("{} tables in {}", baked.tables.len(), out.display()))?;
     if args.json { print_json(&baked.manifest) } else { Ok(()) }
 }

@@ -4,6 +4,9 @@ use super::{Provenance, entry};
 use crate::error::{Error, Result};
 use crate::storage::Storage;
 use crate::table::Table;
+use ::exr::image::write::layers::WritableLayers;
+use ::exr::meta::header::Header;
+use ::exr::meta::{MetaData, magic_number};
 use ::exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, Layer, LayerAttributes, Text,
     WritableImage,
@@ -26,6 +29,57 @@ pub(super) fn encode(table: &Table, provenance: &Provenance) -> Result<Vec<u8>> 
         AnyChannel::new(text(name), samples)
     });
 
+    let channels = AnyChannels::sort(channels.collect());
+    let attributes = attributes(table, provenance)?;
+    let layer = Layer::new(table.image_size(), attributes, Encoding::UNCOMPRESSED, channels);
+    let mut bytes = Cursor::new(Vec::new());
+    Image::from_layer(layer).write().to_buffered(&mut bytes).map_err(|e| fault(&e))?;
+    let mut bytes = bytes.into_inner();
+    sort_attributes(&mut bytes).ok_or_else(|| fault(&"the header cannot be read back"))?;
+    Ok(bytes)
+}
+
+/// The file up to its first scanline, for a table whose values come later, and the channels in the
+/// file's order: header, then the offset of each scanline, which are known as nothing is compressed.
+pub(super) fn head(table: &Table, provenance: &Provenance) -> Result<(Vec<u8>, Vec<usize>)> {
+    let fault = |why: &dyn std::fmt::Display| Error::Internal(format!("table {}: EXR: {why}", table.name));
+    let channel = |name: &String| AnyChannel::new(text(name), FlatSamples::F32(Vec::new()));
+    let channels = AnyChannels::sort(table.channels.iter().map(channel).collect());
+    let attributes = attributes(table, provenance)?;
+    let layer = Layer::new(table.image_size(), attributes, Encoding::UNCOMPRESSED, channels);
+    let image = Image::from_layer(layer);
+    let headers = image.layer_data.infer_headers(&image.attributes);
+
+    let mut bytes = Vec::new();
+    let write = |bytes: &mut Vec<u8>| {
+        let requirements = MetaData::validate(&headers, true)?;
+        bytes.extend(magic_number::BYTES);
+        requirements.write(bytes)?;
+        Header::write_all(&headers, bytes, false)
+    };
+    write(&mut bytes).map_err(|e| fault(&e))?;
+    sort_attributes(&mut bytes).ok_or_else(|| fault(&"the header cannot be read back"))?;
+
+    let (width, height) = table.image_size();
+    let first = bytes.len() + 8 * height;
+    let line = 8 + 4 * width * table.channels.len();
+    bytes.extend((0..height).flat_map(|y| ((first + y * line) as u64).to_le_bytes()));
+    let mut order: Vec<_> = (0..table.channels.len()).collect();
+    order.sort_by_key(|&c| text(&table.channels[c]));
+    Ok((bytes, order))
+}
+
+/// Appends a scanline: its y, its size, and one channel after the other.
+pub(super) fn line(out: &mut Vec<u8>, y: usize, texels: &[f32], order: &[usize]) {
+    out.extend((y as i32).to_le_bytes());
+    out.extend((4 * texels.len() as i32).to_le_bytes());
+    for &c in order {
+        out.extend(texels.iter().skip(c).step_by(order.len()).flat_map(|v| v.to_le_bytes()));
+    }
+}
+
+fn attributes(table: &Table, provenance: &Provenance) -> Result<LayerAttributes> {
+    let fault = |why: &dyn std::fmt::Display| Error::Internal(format!("table {}: EXR: {why}", table.name));
     let mut attributes = LayerAttributes::default();
     for (name, value) in describe(table).map_err(|e| fault(&e))? {
         attributes.other.insert(text(&name), AttributeValue::Text(text(&value)));
@@ -38,14 +92,7 @@ pub(super) fn encode(table: &Table, provenance: &Provenance) -> Result<Vec<u8>> 
     }
     attributes.software_name = Some(text(concat!("gonio ", env!("CARGO_PKG_VERSION"))));
     attributes.comments = Some(text(&in_words(table)));
-
-    let channels = AnyChannels::sort(channels.collect());
-    let layer = Layer::new(table.image_size(), attributes, Encoding::UNCOMPRESSED, channels);
-    let mut bytes = Cursor::new(Vec::new());
-    Image::from_layer(layer).write().to_buffered(&mut bytes).map_err(|e| fault(&e))?;
-    let mut bytes = bytes.into_inner();
-    sort_attributes(&mut bytes).ok_or_else(|| fault(&"the header cannot be read back"))?;
-    Ok(bytes)
+    Ok(attributes)
 }
 
 /// The table without its values and without times, as attributes.

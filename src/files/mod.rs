@@ -10,11 +10,14 @@ mod panel;
 mod png;
 mod scale;
 mod set;
+mod stream;
 mod tradeoff;
 
 pub use entry::TableEntry;
+pub(crate) use manifest::hash;
 pub use manifest::{read_manifest, sha256, verify};
 pub use set::{Files, TableSet};
+pub(crate) use stream::Tiles;
 pub(crate) use tradeoff::draw as draw_trade;
 
 use crate::error::{Error, Result};

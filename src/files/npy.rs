@@ -5,16 +5,23 @@ use crate::error::{Error, Result};
 use crate::storage::{Storage, UNORM};
 use crate::table::{Table, Values};
 use half::f16;
-use npyz::{DType, Serialize, WriteOptions, WriterBuilder};
+use npyz::{DType, NpyWriter, Serialize, WriteOptions, WriterBuilder};
 
 /// The bytes of the file.
 pub(super) fn encode(table: &Table) -> Result<Vec<u8>> {
     write(table).map_err(|error| Error::Internal(format!("table {}: NPY: {error}", table.name)))
 }
 
+/// The file up to its first value, for a table in f32 whose values come later.
+pub(super) fn head(table: &Table) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let fault = |error| Error::Internal(format!("table {}: NPY: {error}", table.name));
+    drop(begin::<f32>("<f4", &shape(table), &mut bytes).map_err(fault)?);
+    Ok(bytes)
+}
+
 fn write(table: &Table) -> std::io::Result<Vec<u8>> {
-    let shape = table.axes.iter().map(|axis| axis.len()).chain([table.channels.len()]);
-    let shape: Vec<u64> = shape.map(|n| n as u64).collect();
+    let shape = shape(table);
     // Little-endian on every machine, so that the same table gives the same bytes.
     match (&table.values, table.storage) {
         (values, Storage::F16) => array("<f2", &shape, values.iter().map(f16::from_f64)),
@@ -30,10 +37,23 @@ fn array<T: Serialize>(
     shape: &[u64],
     values: impl Iterator<Item = T>,
 ) -> std::io::Result<Vec<u8>> {
-    let dtype = DType::Plain(dtype.parse().map_err(std::io::Error::other)?);
     let mut bytes = Vec::new();
-    let mut writer = WriteOptions::new().dtype(dtype).shape(shape).writer(&mut bytes).begin_nd()?;
+    let mut writer = begin(dtype, shape, &mut bytes)?;
     writer.extend(values)?;
     writer.finish()?;
     Ok(bytes)
+}
+
+fn begin<'a, T: Serialize>(
+    dtype: &str,
+    shape: &[u64],
+    bytes: &'a mut Vec<u8>,
+) -> std::io::Result<NpyWriter<T, &'a mut Vec<u8>>> {
+    let dtype = DType::Plain(dtype.parse().map_err(std::io::Error::other)?);
+    WriteOptions::new().dtype(dtype).shape(shape).writer(bytes).begin_nd()
+}
+
+fn shape(table: &Table) -> Vec<u64> {
+    let shape = table.axes.iter().map(|axis| axis.len()).chain([table.channels.len()]);
+    shape.map(|n| n as u64).collect()
 }

@@ -1,6 +1,7 @@
 //! A set of tables and its manifest, written all or nothing.
 
 use super::manifest::{self, Listed, MANIFEST};
+use super::stream::{self, Tiles};
 use super::{Format, Provenance};
 use crate::error::{Error, Result};
 use crate::table::Table;
@@ -12,6 +13,8 @@ use std::path::{Path, PathBuf};
 
 /// Where files wait for the commit.
 const STAGING: &str = ".gonio-staging";
+/// Finished tiles of tables that are too large for memory. A bake that was killed finds them again.
+const PARTIAL: &str = ".gonio-partial";
 /// The new manifest from the commit point until every table is in its place.
 const NEXT: &str = "manifest.json.next";
 /// Held while a bake runs. It stays behind: removing a lock file is a race.
@@ -29,6 +32,9 @@ const LOCK: &str = ".gonio.lock";
 /// Whoever comes after a kill ([`create`](Self::create), [`read_manifest`](super::read_manifest)) finds
 /// `manifest.json.next` and does steps 2 to 5 again, or does not find it and drops the staging folder. So
 /// readers see the old set or the new one. Files that are not of the set are never touched.
+///
+/// Tables larger than memory come in tiles, which wait in `.gonio-partial` until the commit. They outlast a
+/// bake that was cut off, under a name that stands for all that made them.
 #[derive(Debug)]
 pub struct TableSet {
     dir: PathBuf,
@@ -108,6 +114,67 @@ impl TableSet {
         Ok(written)
     }
 
+    /// Where the tiles of a streamed table are kept; `keys` name all that this bake streams, and tiles of
+    /// anything else go.
+    ///
+    /// # Errors
+    /// When the folder cannot be written.
+    pub(crate) fn tiles(&self, keys: &BTreeSet<String>, key: &str) -> Result<Tiles> {
+        let partial = self.dir.join(PARTIAL);
+        let dir = partial.join(key);
+        fs::create_dir_all(&dir).map_err(explain("create the folder", &dir))?;
+        for entry in fs::read_dir(&partial).map_err(explain("read", &partial))? {
+            let path = entry.map_err(explain("read", &partial))?.path();
+            let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+            if !keys.contains(name) {
+                clear(&path)?;
+            }
+        }
+        Ok(Tiles::new(dir))
+    }
+
+    /// Drops all tiles: nothing will come of them.
+    pub(crate) fn discard_tiles(&self) -> Result<()> {
+        clear(&self.dir.join(PARTIAL))
+    }
+
+    /// Adds a table whose values are in `tiles`; `preview` is a part of it, to look at.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write).
+    pub(crate) fn write_streamed(
+        &mut self,
+        table: &Table,
+        tiles: &Tiles,
+        preview: &Table,
+        formats: &[Format],
+        provenance: &Provenance,
+        tick: &mut dyn FnMut(f64) -> Result<()>,
+    ) -> Result<Files> {
+        let stem = self.free_stem(&table.name);
+        let mut written = Files { files: BTreeMap::new(), sha256: BTreeMap::new() };
+        for &format in formats {
+            let name = format!("{stem}.{format}");
+            self.refuse_foreign(&name)?;
+            let path = self.dir.join(STAGING).join(&name);
+            let share = 1.0 / formats.len() as f64;
+            let sha256 = match format {
+                Format::Exr | Format::Npy => {
+                    stream::write(format, table, tiles, provenance, &path, &mut |part| tick(share * part))?
+                }
+                Format::Png => {
+                    let bytes = format.encode(preview, provenance)?;
+                    save(&path, &bytes)?;
+                    manifest::hash(&bytes)
+                }
+            };
+            written.sha256.insert(format, sha256);
+            self.staged.insert(name.clone());
+            written.files.insert(format, name);
+        }
+        Ok(written)
+    }
+
     /// Replaces the old set by the new one. `manifest` must be an object with `schema`, `gonio` and
     /// `tables`, the latter [`TableEntry`](super::TableEntry)s of every table written.
     ///
@@ -128,7 +195,8 @@ impl TableSet {
         rename(&path, &self.dir.join(NEXT))?;
         self.committed = true;
         sync_folder(&self.dir)?;
-        roll_forward(&self.dir)
+        roll_forward(&self.dir)?;
+        self.discard_tiles()
     }
 
     /// A stem that is safe on every file system and new to this set.
@@ -268,7 +336,7 @@ fn sync_folder(dir: &Path) -> Result<()> {
 }
 
 /// An error that names the path and, where there is one, the remedy.
-fn explain(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Error {
+pub(super) fn explain(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Error {
     let path = path.to_owned();
     move |error| {
         let remedy = match error.kind() {

@@ -1,7 +1,7 @@
 //! Records the baking of a table on a device that the caller owns.
 
-use super::compose::{Kernel, compose, validate};
-use super::stage::{Job, Stage, Stages};
+use super::compose::{Kernel, VALUE_WINDOW, compose, validate};
+use super::stage::{Job, Rows, Stage, Stages};
 use crate::axis::Variable;
 use crate::error::{Error, Result};
 use crate::models::Model;
@@ -15,7 +15,6 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// Bakes tables on a device.
 ///
@@ -42,6 +41,13 @@ pub struct Recorded {
     pub height: usize,
     /// Channels of a texel.
     pub channels: usize,
+}
+
+/// A table whose buffers and pipelines are there.
+pub struct Prepared {
+    /// Where it will be.
+    pub recorded: Recorded,
+    steps: Vec<Step>,
 }
 
 /// One dispatch, ready to encode.
@@ -104,12 +110,29 @@ impl Layout {
         units * self.padded * self.channels * self.precision.bytes()
     }
 
-    /// The values that bytes without padding hold.
-    pub fn values(&self, bytes: &[u8]) -> Values {
+    /// No values yet, of the result's kind, with room for so many units.
+    pub fn values(&self, units: usize) -> Values {
+        let room = units * self.texels * self.channels;
         match self.precision {
-            // Copied number by number: bytes need not be aligned.
-            Precision::F32 => Values::F32(bytemuck::pod_collect_to_vec(bytes)),
-            Precision::F64 => Values::F64(bytemuck::pod_collect_to_vec(bytes)),
+            Precision::F32 => Values::F32(Vec::with_capacity(room)),
+            Precision::F64 => Values::F64(Vec::with_capacity(room)),
+        }
+    }
+
+    /// Appends the values that a device's bytes hold, without their padding.
+    pub fn append(&self, bytes: &[u8], values: &mut Values) {
+        let number = self.channels * self.precision.bytes();
+        for row in bytes.chunks_exact(self.padded * number) {
+            let row = &row[..self.texels * number];
+            // Number by number: bytes need not be aligned.
+            match values {
+                Values::F32(values) => {
+                    values.extend(row.as_chunks().0.iter().map(|&bytes| f32::from_le_bytes(bytes)));
+                }
+                Values::F64(values) => {
+                    values.extend(row.as_chunks().0.iter().map(|&bytes| f64::from_le_bytes(bytes)));
+                }
+            }
         }
     }
 
@@ -139,6 +162,17 @@ impl Baker {
     /// # Errors
     /// When the table does not fit one binding of the device.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, table: &TablePlan) -> Result<Recorded> {
+        let prepared = self.prepare(table)?;
+        prepared.encode(encoder);
+        Ok(prepared.recorded)
+    }
+
+    /// All that [`record`](Self::record) needs, made once: for whoever bakes the same table again and
+    /// again into the same buffer.
+    ///
+    /// # Errors
+    /// When the table does not fit one binding of the device.
+    pub fn prepare(&self, table: &TablePlan) -> Result<Prepared> {
         let layout = Layout::new(table, Precision::F32);
         let stages = self.stages(table, Precision::F32)?;
         let raw = stages.iter().map(Stages::raw_bytes_per_unit).max().unwrap_or(0) * layout.units;
@@ -152,18 +186,16 @@ impl Baker {
             )));
         }
         let tile = self.tile(&layout, &stages, 0..layout.units)?;
-        for step in &tile.steps {
-            step.encode(encoder);
-        }
         let width = table.axes.last().map_or(1, |axis| axis.len());
         let row = if is_value(table) { layout.padded } else { width };
-        Ok(Recorded {
+        let recorded = Recorded {
             buffer: tile.buffer,
             width,
             row,
             height: table.texels() / width,
             channels: layout.channels,
-        })
+        };
+        Ok(Prepared { recorded, steps: tile.steps })
     }
 
     /// The work of every lobe of a table, uploaded.
@@ -178,18 +210,30 @@ impl Baker {
 
     /// The steps of one tile, and the buffer that they fill.
     pub(super) fn tile(&self, layout: &Layout, stages: &[Stages], units: Range<usize>) -> Result<Tile> {
-        let mut tile = Tile { buffer: self.output(layout.bytes(units.len())), steps: Vec::new() };
+        let buffer = self.output(layout.bytes(units.len()));
+        let steps = self.fill(&buffer, stages, units)?;
+        Ok(Tile { buffer, steps })
+    }
+
+    /// The steps that fill a buffer with some units.
+    pub(super) fn fill(
+        &self,
+        buffer: &wgpu::Buffer,
+        stages: &[Stages],
+        units: Range<usize>,
+    ) -> Result<Vec<Step>> {
+        let mut steps = Vec::new();
         for Stages { inner, sum } in stages {
             match sum {
-                None => self.steps(inner, &[], &units, &tile.buffer, &mut tile.steps)?,
+                None => self.steps(inner, &[], &units, buffer, &mut steps)?,
                 Some(sum) => {
                     let raw = self.output(units.len() * inner.per_unit * 2 * inner.precision.bytes());
-                    self.steps(inner, &[], &units, &raw, &mut tile.steps)?;
-                    self.steps(sum, &[&raw], &units, &tile.buffer, &mut tile.steps)?;
+                    self.steps(inner, &[], &units, &raw, &mut steps)?;
+                    self.steps(sum, &[&raw], &units, buffer, &mut steps)?;
                 }
             }
         }
-        Ok(tile)
+        Ok(steps)
     }
 
     /// The dispatches of a stage over some units: as many as the cost asks for.
@@ -203,6 +247,9 @@ impl Baker {
     ) -> Result<()> {
         let pipeline = self.pipeline(stage.kernel, stage.model, stage.channels, stage.precision)?;
         let layout = pipeline.get_bind_group_layout(0);
+        if let (Some(rows), [quads]) = (&stage.rows, &stage.inputs[..]) {
+            return self.value_steps(stage, &pipeline, (rows, quads), units, output, steps);
+        }
         let range =
             units.start / stage.units * stage.per_unit..units.end.div_ceil(stage.units) * stage.per_unit;
         let base = count(units.start * stage.per_unit)?;
@@ -230,6 +277,60 @@ impl Baker {
                 workgroups: count((end - first).div_ceil(WORKGROUP))?,
                 evaluations: ((end - first) * stage.cost) as u64,
             });
+        }
+        Ok(())
+    }
+
+    /// The dispatches of a stage of values: windows of rows and of quads.
+    fn value_steps(
+        &self,
+        stage: &Stage,
+        pipeline: &wgpu::ComputePipeline,
+        (rows, quads): (&Rows, &wgpu::Buffer),
+        units: &Range<usize>,
+        output: &wgpu::Buffer,
+        steps: &mut Vec<Step>,
+    ) -> Result<()> {
+        const BYTES: usize = VALUE_WINDOW * 32;
+        let rows = self.init(bytemuck::cast_slice(&rows.window(units)), wgpu::BufferUsages::UNIFORM);
+        let window = |buffer, first: usize| {
+            let size = std::num::NonZeroU64::new(BYTES as u64);
+            wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: (first * 32) as u64, size })
+        };
+        for row in (0..units.len()).step_by(VALUE_WINDOW) {
+            for quad in (0..stage.per_unit).step_by(VALUE_WINDOW) {
+                let columns = VALUE_WINDOW.min(stage.per_unit - quad);
+                let invocations = columns * VALUE_WINDOW.min(units.len() - row);
+                let job = Job {
+                    first: count(row)?,
+                    end: count(invocations)?,
+                    columns: count(columns)?,
+                    azimuths: count(stage.per_unit)?,
+                    nodes: count(quad)?,
+                    ..stage.job
+                };
+                let job = self.init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
+                let resources = [
+                    job.as_entire_binding(),
+                    window(&rows, row),
+                    window(quads, quad),
+                    output.as_entire_binding(),
+                ];
+                let entries: Vec<_> = (0..)
+                    .zip(resources)
+                    .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+                    .collect();
+                steps.push(Step {
+                    pipeline: pipeline.clone(),
+                    bind_group: self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                        label: None,
+                        layout: &pipeline.get_bind_group_layout(0),
+                        entries: &entries,
+                    }),
+                    workgroups: count(invocations.div_ceil(WORKGROUP))?,
+                    evaluations: (invocations * stage.cost) as u64,
+                });
+            }
         }
         Ok(())
     }
@@ -272,9 +373,16 @@ impl Baker {
         *self.composing.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A buffer with the given bytes.
+    /// A buffer with the given bytes. Not mapped: wgpu panics when it maps on a device that is lost.
     pub(super) fn init(&self, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
-        self.device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage })
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: contents.len() as u64,
+            usage: usage | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        self.queue.write_buffer(&buffer, 0, contents);
+        buffer
     }
 
     /// A buffer for results. wgpu clears it when it is first used; kernels write all of it.
@@ -296,6 +404,13 @@ fn is_value(table: &TablePlan) -> bool {
 pub(super) fn count(n: usize) -> Result<u32> {
     u32::try_from(n)
         .map_err(|_| Error::Device(format!("{n} is more than a device counts to; take fewer samples")))
+}
+
+impl Prepared {
+    /// Records the baking. Does not submit or block.
+    pub fn encode(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.steps.iter().for_each(|step| step.encode(encoder));
+    }
 }
 
 impl Step {

@@ -14,6 +14,8 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 pub enum Kernel {
     /// Values over (α, θi, θe, δφ).
     Values,
+    /// The same, added to those of earlier lobes.
+    AddValues,
     /// Integrals in slopes.
     Slopes,
     /// The same where azimuths or nodes do not fit a uniform binding.
@@ -49,6 +51,10 @@ macro_rules! shader {
     };
 }
 
+/// Rows and quads of azimuths that one dispatch of values takes: 32 bytes each in a uniform buffer, of which
+/// every device binds 64 KiB.
+pub(super) const VALUE_WINDOW: usize = 1024;
+
 /// The WGSL of `kernel` for `model` (none: kernels that evaluate no model) and so many channels.
 pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize, precision: Precision) -> String {
     match kernel {
@@ -71,7 +77,10 @@ pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize, precision
             add(name, wgsl);
         }
     }
-    if kernel == Kernel::Values {
+    if let Kernel::Values | Kernel::AddValues = kernel {
+        let constants =
+            format!("const ADD = {};\nconst WINDOW = {VALUE_WINDOW}u;\n", kernel == Kernel::AddValues);
+        add("constants", &constants);
         match channels {
             1 => add("kernel/store_1", shader!("kernel/store_1")),
             2 => add("kernel/store_2", shader!("kernel/store_2")),
@@ -100,7 +109,7 @@ pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize, precision
             add("sampling/vndf", shader!("sampling/vndf"));
             add("sampling/random", shader!("sampling/random"));
         }
-        Kernel::Values => add("kernel/values", shader!("kernel/values")),
+        Kernel::Values | Kernel::AddValues => add("kernel/values", shader!("kernel/values")),
         Kernel::Slopes => {
             add("kernel/slopes_uniform", shader!("kernel/slopes_uniform"));
             add("kernel/slopes", shader!("kernel/slopes"));

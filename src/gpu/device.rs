@@ -43,6 +43,8 @@ pub struct Device {
     pub(crate) baker: Baker,
     /// What wgpu says of its adapter.
     pub info: wgpu::AdapterInfo,
+    #[cfg(feature = "files")]
+    adapter: Adapter,
     fault: Arc<Mutex<Option<String>>>,
 }
 
@@ -102,7 +104,18 @@ impl Adapter {
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             first.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error.to_string());
         }));
-        Ok(Device { baker: Baker::new(&device, &queue), info: self.info.clone(), fault })
+        let lost = fault.clone();
+        device.set_device_lost_callback(move |reason, why| {
+            let what = format!("the device is lost ({reason:?}) {why}");
+            lost.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(what);
+        });
+        Ok(Device {
+            baker: Baker::new(&device, &queue),
+            info: self.info.clone(),
+            #[cfg(feature = "files")]
+            adapter: self.clone(),
+            fault,
+        })
     }
 }
 
@@ -160,6 +173,12 @@ impl Device {
         }
     }
 
+    /// A new device on the same adapter, after this one was lost.
+    #[cfg(feature = "files")]
+    pub(crate) fn reopen(&self) -> Result<Self> {
+        self.adapter.open()
+    }
+
     /// The adapter's name.
     pub fn name(&self) -> &str {
         &self.info.name
@@ -183,6 +202,11 @@ impl Device {
     /// The baker on this device.
     pub fn baker(&self) -> &Baker {
         &self.baker
+    }
+
+    /// The device and its queue.
+    pub fn wgpu(&self) -> (&wgpu::Device, &wgpu::Queue) {
+        (&self.baker.device, &self.baker.queue)
     }
 
     /// The first error that the device reported, if it did.

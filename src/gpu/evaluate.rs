@@ -1,13 +1,35 @@
-//! The headless bake: the same recording, one submission a dispatch, read back.
+//! The headless bake: the same recording, in short submissions, read back while the next tile is
+//! computed.
 
-use super::baker::{Baker, Layout, Step, Tile};
+use super::baker::{Baker, EVALUATIONS_PER_DISPATCH, Layout, Tile};
 use super::device::Device;
+use super::stage::Stages as Work;
 use crate::bake::Stages;
 use crate::error::{Error, Result};
 use crate::plan::{Precision, TablePlan};
 use crate::table::Values;
-use std::sync::mpsc;
+use std::ops::Range;
+use std::sync::mpsc::{self, Receiver};
 use std::time::Instant;
+
+/// What the device does in one submission, after which a bake can be stopped: as much as one dispatch may.
+const EVALUATIONS_PER_SUBMISSION: u64 = EVALUATIONS_PER_DISPATCH as u64;
+
+/// Where a tile is computed and where the host reads it. Two of them take turns: the first touch of a
+/// buffer costs more than to compute what it holds.
+struct Slot {
+    output: wgpu::Buffer,
+    staging: wgpu::Buffer,
+    /// The tile on its way, if there is one, and the share of the table's work that nobody waited for yet.
+    flight: Option<(Flight, f64)>,
+}
+
+/// A result on its way to the host.
+struct Flight {
+    last: wgpu::SubmissionIndex,
+    mapped: Receiver<Result<(), wgpu::BufferAsyncError>>,
+    bytes: u64,
+}
 
 impl Device {
     /// The values of a table, row-major, channels last. `tick` is called as work is done, with its
@@ -19,79 +41,187 @@ impl Device {
         times: &mut Stages,
         tick: &(impl Fn(f64) -> Result<()> + Sync),
     ) -> Result<Values> {
+        let layout = Layout::new(table, precision);
+        let mut values = layout.values(layout.units);
+        self.tiles(table, &layout, None, times, tick, &mut values, &mut |_, _| Ok(()))?;
+        Ok(values)
+    }
+
+    /// The values of some rows of a table of values at a time, in f32 (a row is all azimuths of an α and a
+    /// pair): `sink` gets each of `tiles` in order, while the device computes the next.
+    #[cfg(feature = "files")]
+    pub(crate) fn stream(
+        &self,
+        table: &TablePlan,
+        tiles: &[Range<usize>],
+        times: &mut Stages,
+        sink: &mut dyn FnMut(usize, &[f32]) -> Result<()>,
+    ) -> Result<()> {
+        let layout = Layout::new(table, Precision::F32);
+        let mut values = layout.values(0);
+        self.tiles(table, &layout, Some(tiles), times, &|_| Ok(()), &mut values, &mut |k, values| {
+            sink(k, &values.to_f32())?;
+            values.clear();
+            Ok(())
+        })
+    }
+
+    /// Appends the values of tile after tile to `values`; `sink` looks at them after each, and may take them.
+    #[allow(clippy::too_many_arguments)]
+    fn tiles(
+        &self,
+        table: &TablePlan,
+        layout: &Layout,
+        tiles: Option<&[Range<usize>]>,
+        times: &mut Stages,
+        tick: &impl Fn(f64) -> Result<()>,
+        values: &mut Values,
+        sink: &mut dyn FnMut(usize, &mut Values) -> Result<()>,
+    ) -> Result<()> {
         let start = Instant::now();
         let composed = self.baker.compose_seconds();
-        let layout = Layout::new(table, precision);
-        let stages = self.baker.stages(table, precision)?;
-        let tiles = layout.tiles(&stages);
-        let mut bytes = Vec::with_capacity(layout.bytes(layout.units));
+        let stages = self.baker.stages(table, layout.precision)?;
+        let tiles = tiles.map_or_else(|| layout.tiles(&stages), <[_]>::to_vec);
+        let largest = layout.bytes(tiles.iter().map(Range::len).max().unwrap_or(0));
+        let mut slots: Vec<_> = tiles.iter().take(2).map(|_| self.slot(largest)).collect();
         times.compile += start.elapsed().as_secs_f64();
-        for units in &tiles {
-            let start = Instant::now();
-            let tile = self.baker.tile(&layout, &stages, units.clone())?;
-            times.compile += start.elapsed().as_secs_f64();
-            let start = Instant::now();
-            self.run(&tile, &|share| tick(share / tiles.len() as f64))?;
-            times.dispatch += start.elapsed().as_secs_f64();
-            let start = Instant::now();
-            self.read_back(&tile, &layout, &mut bytes)?;
-            times.readback += start.elapsed().as_secs_f64();
+
+        for k in 0..=tiles.len() {
+            if let Some(units) = tiles.get(k) {
+                let share = units.len() as f64 / layout.units as f64;
+                self.launch(&mut slots[k % 2], layout, &stages, units, share, times, tick)?;
+            }
+            let landing = k.checked_sub(1).and_then(|last| Some((last, slots.get_mut(last % 2)?)));
+            if let Some((last, Slot { staging, flight, .. })) = landing
+                && let Some((flight, share)) = flight.take()
+            {
+                let start = Instant::now();
+                self.arrive(&flight)?;
+                times.dispatch += start.elapsed().as_secs_f64();
+                let start = Instant::now();
+                self.land(staging, flight, layout, values)?;
+                times.readback += start.elapsed().as_secs_f64();
+                sink(last, values)?;
+                tick(share)?;
+            }
         }
         let composing = self.baker.compose_seconds() - composed;
         times.compose += composing;
         times.compile -= composing;
-        Ok(layout.values(&bytes))
-    }
-
-    fn run(&self, tile: &Tile, tick: &impl Fn(f64) -> Result<()>) -> Result<()> {
-        let all: u64 = tile.steps.iter().map(|step| step.evaluations).sum();
-        for step in &tile.steps {
-            self.submit(step)?;
-            tick(step.evaluations as f64 / all.max(1) as f64)?;
-        }
         Ok(())
     }
 
-    fn submit(&self, step: &Step) -> Result<()> {
+    /// Starts a tile; waits for all its submissions but the last.
+    #[allow(clippy::too_many_arguments)]
+    fn launch(
+        &self,
+        slot: &mut Slot,
+        layout: &Layout,
+        stages: &[Work],
+        units: &Range<usize>,
+        share: f64,
+        times: &mut Stages,
+        tick: &impl Fn(f64) -> Result<()>,
+    ) -> Result<()> {
         let Baker { device, queue, .. } = &self.baker;
+        let start = Instant::now();
+        let steps = self.baker.fill(&slot.output, stages, units.clone())?;
+        times.compile += start.elapsed().as_secs_f64();
+        let start = Instant::now();
+        let all: u64 = steps.iter().map(|step| step.evaluations).sum();
+        let part = |evaluations: u64| share * evaluations as f64 / all.max(1) as f64;
         let mut encoder = device.create_command_encoder(&Default::default());
-        step.encode(&mut encoder);
-        queue.submit([encoder.finish()]);
-        self.wait()
+        let (mut recorded, mut left) = (0, share);
+        for step in &steps {
+            if recorded > 0 && recorded + step.evaluations > EVALUATIONS_PER_SUBMISSION {
+                queue.submit([encoder.finish()]);
+                self.wait()?;
+                tick(part(recorded))?;
+                left -= part(recorded);
+                recorded = 0;
+                encoder = device.create_command_encoder(&Default::default());
+            }
+            step.encode(&mut encoder);
+            recorded += step.evaluations;
+        }
+        let bytes = layout.bytes(units.len()) as u64;
+        slot.flight = Some((self.send(encoder, &slot.output, &slot.staging, bytes), left));
+        times.dispatch += start.elapsed().as_secs_f64();
+        Ok(())
     }
 
+    /// Reads a tile that was computed, and appends its values.
+    pub(super) fn read_back(&self, tile: &Tile, layout: &Layout, values: &mut Values) -> Result<()> {
+        let staging = self.staging(tile.buffer.size());
+        let encoder = self.baker.device.create_command_encoder(&Default::default());
+        let flight = self.send(encoder, &tile.buffer, &staging, tile.buffer.size());
+        self.arrive(&flight)?;
+        self.land(&staging, flight, layout, values)
+    }
+
+    /// Submits what is recorded, and after it the copy of a result to where the host reads it.
+    fn send(
+        &self,
+        mut encoder: wgpu::CommandEncoder,
+        output: &wgpu::Buffer,
+        staging: &wgpu::Buffer,
+        bytes: u64,
+    ) -> Flight {
+        encoder.copy_buffer_to_buffer(output, 0, staging, 0, bytes);
+        let last = self.baker.queue.submit([encoder.finish()]);
+        let (sender, mapped) = mpsc::channel();
+        staging.map_async(wgpu::MapMode::Read, ..bytes, move |result| {
+            // Without a receiver nobody wants the tile any more.
+            let _ = sender.send(result);
+        });
+        Flight { last, mapped, bytes }
+    }
+
+    /// Waits until a result is there.
+    fn arrive(&self, flight: &Flight) -> Result<()> {
+        self.poll(wgpu::PollType::Wait { submission_index: Some(flight.last.clone()), timeout: None })
+    }
+
+    /// Appends the values of a result that is there.
+    fn land(
+        &self,
+        staging: &wgpu::Buffer,
+        flight: Flight,
+        layout: &Layout,
+        values: &mut Values,
+    ) -> Result<()> {
+        let Flight { mapped, bytes, .. } = flight;
+        let lost = |why: String| Error::Device(format!("{}: cannot read results back: {why}", self.name()));
+        mapped.recv().map_err(|e| lost(e.to_string()))?.map_err(|e| lost(e.to_string()))?;
+        let view = staging.get_mapped_range(..bytes).map_err(|e| lost(e.to_string()))?;
+        layout.append(&view, values);
+        drop(view);
+        staging.unmap();
+        Ok(())
+    }
+
+    /// Waits for all that was submitted.
     pub(super) fn wait(&self) -> Result<()> {
-        let polled = self.baker.device.poll(wgpu::PollType::wait_indefinitely());
+        self.poll(wgpu::PollType::wait_indefinitely())
+    }
+
+    fn poll(&self, what: wgpu::PollType) -> Result<()> {
+        let polled = self.baker.device.poll(what);
         self.fault()?;
         polled.map_err(|e| Error::Device(format!("{}: {e}", self.name())))?;
         Ok(())
     }
 
-    /// Appends a tile's values as bytes, without their padding.
-    pub(super) fn read_back(&self, tile: &Tile, layout: &Layout, bytes: &mut Vec<u8>) -> Result<()> {
-        let Baker { device, queue, .. } = &self.baker;
-        let staging = device.create_buffer(&wgpu::BufferDescriptor {
+    fn slot(&self, bytes: usize) -> Slot {
+        Slot { output: self.baker.output(bytes), staging: self.staging(bytes as u64), flight: None }
+    }
+
+    fn staging(&self, bytes: u64) -> wgpu::Buffer {
+        self.baker.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
-            size: tile.buffer.size(),
+            size: bytes,
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
-        });
-        let mut encoder = device.create_command_encoder(&Default::default());
-        encoder.copy_buffer_to_buffer(&tile.buffer, 0, &staging, 0, tile.buffer.size());
-        queue.submit([encoder.finish()]);
-        let (sender, receiver) = mpsc::channel();
-        staging.map_async(wgpu::MapMode::Read, .., move |result| {
-            // The receiver lives to the end of this function; nobody else could miss the message.
-            let _ = sender.send(result);
-        });
-        self.wait()?;
-        let lost = |why: String| Error::Device(format!("{}: cannot read results back: {why}", self.name()));
-        receiver.recv().map_err(|e| lost(e.to_string()))?.map_err(|e| lost(e.to_string()))?;
-        let view = staging.get_mapped_range(..).map_err(|e| lost(e.to_string()))?;
-        let number = layout.channels * layout.precision.bytes();
-        for row in view.chunks_exact(layout.padded * number) {
-            bytes.extend_from_slice(&row[..layout.texels * number]);
-        }
-        Ok(())
+        })
     }
 }

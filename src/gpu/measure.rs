@@ -37,11 +37,11 @@ impl Warm<'_> {
 
     /// The values of the last run.
     pub fn values(&self) -> Result<Values> {
-        let mut bytes = Vec::with_capacity(self.layout.bytes(self.layout.units));
+        let mut values = self.layout.values(self.layout.units);
         for tile in &self.tiles {
-            self.device.read_back(tile, &self.layout, &mut bytes)?;
+            self.device.read_back(tile, &self.layout, &mut values)?;
         }
-        Ok(self.layout.values(&bytes))
+        Ok(values)
     }
 }
 

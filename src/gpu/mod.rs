@@ -11,7 +11,7 @@ mod measure;
 mod stage;
 mod texture;
 
-pub use baker::{Baker, Recorded};
+pub use baker::{Baker, Prepared, Recorded};
 pub use compose::{Kernel, compose, validate};
 pub use device::{Adapter, Device, DeviceChoice, INSTALL, adapters};
 pub(crate) use measure::{Rates, Warm};

@@ -1,7 +1,7 @@
 //! The work of one lobe, uploaded: f64 factors rounded to the kernels' precision, as they lay them out.
 
 use super::baker::{Baker, count};
-use super::compose::{Kernel, vectors};
+use super::compose::{Kernel, VALUE_WINDOW, vectors};
 use crate::error::Result;
 use crate::models::{ALPHA_MIN_INTEGRAL, Model};
 use crate::pair::{Azimuth, Pair};
@@ -27,12 +27,42 @@ pub(super) struct Stage {
     pub precision: Precision,
     pub job: Job,
     pub inputs: Vec<wgpu::Buffer>,
+    /// The rows of a table of values, which are uploaded for each tile.
+    pub rows: Option<Rows>,
     /// Results for each unit of the table (see `Layout`).
     pub per_unit: usize,
     /// Units whose results one invocation makes.
     pub units: usize,
     /// Evaluations of an invocation.
     pub cost: usize,
+}
+
+/// The rows of a table of values: every α with every pair.
+pub(super) struct Rows {
+    alphas: Vec<f64>,
+    pairs: Vec<Row>,
+}
+
+/// `Pair` of `shaders/pair.wgsl` in f32, the only precision of values on a device. The last is α.
+type Row = [f32; 8];
+
+impl Rows {
+    fn new(alphas: &[f64], pairs: &[Pair]) -> Self {
+        let row = |pair: &Pair| pair.to_array().map(|x| x as f32);
+        Self { alphas: alphas.to_vec(), pairs: pairs.iter().map(row).collect() }
+    }
+
+    /// Some of them as the kernel lays them out, in whole windows.
+    pub fn window(&self, units: &Range<usize>) -> Vec<Row> {
+        let row = |unit: usize| {
+            let mut row = self.pairs[unit % self.pairs.len()];
+            row[7] = self.alphas[unit / self.pairs.len()] as f32;
+            row
+        };
+        let mut rows: Vec<_> = units.clone().map(row).collect();
+        rows.resize(rows.len().next_multiple_of(VALUE_WINDOW), Row::zeroed());
+        rows
+    }
 }
 
 /// `Job` of `shaders/kernel/job.wgsl`.
@@ -64,12 +94,13 @@ impl Stages {
         match &work.kind {
             WorkKind::Values { pairs, azimuths } => Ok(Self {
                 inner: Stage {
-                    kernel: Kernel::Values,
+                    kernel: if accumulate { Kernel::AddValues } else { Kernel::Values },
                     model: Some(lobe.model),
                     channels,
-                    precision,
-                    job: Job { columns: count(pairs.len())?, azimuths: count(azimuths.len())?, ..job },
-                    inputs: vec![upload.reals(&work.alphas), upload.pairs(pairs), upload.azimuths(azimuths)],
+                    precision: Precision::F32,
+                    job,
+                    inputs: vec![upload.quads(azimuths)],
+                    rows: Some(Rows::new(&work.alphas, pairs)),
                     per_unit: azimuths.len().div_ceil(4),
                     units: 1,
                     cost: 4,
@@ -89,6 +120,7 @@ impl Stages {
                     precision,
                     job: Job { columns: count(channels)?, nodes: count(outer.len())?, ..job },
                     inputs: vec![upload.reals(outer)],
+                    rows: None,
                     per_unit: inner.count() / outer.len(),
                     units: 1,
                     cost: outer.len(),
@@ -164,6 +196,7 @@ impl Stage {
             precision: upload.precision,
             job,
             inputs,
+            rows: None,
             per_unit: 1,
             units,
             cost: units * inner.cost(),
@@ -226,6 +259,19 @@ impl Upload<'_> {
 
     fn azimuths(&self, azimuths: &[Azimuth]) -> wgpu::Buffer {
         self.reals(azimuths.iter().map(|azimuth| azimuth.to_array()).collect::<Vec<_>>().as_flattened())
+    }
+
+    /// Azimuths of values by fours, sin² and then cos², in whole windows.
+    fn quads(&self, azimuths: &[Azimuth]) -> wgpu::Buffer {
+        let four = |four: &[Azimuth]| {
+            // The last one fills the last quad.
+            let of = |k: usize| &four[k.min(four.len() - 1)];
+            let at = |get: fn(&Azimuth) -> f64| [0, 1, 2, 3].map(|k| get(of(k)) as f32);
+            [at(|a| a.sin2), at(|a| a.cos2)]
+        };
+        let mut quads: Vec<_> = azimuths.chunks(4).map(four).collect();
+        quads.resize(quads.len().next_multiple_of(VALUE_WINDOW), [[0.0; 4]; 2]);
+        self.baker.init(bytemuck::cast_slice(&quads), wgpu::BufferUsages::UNIFORM)
     }
 
     fn input<T: Pod>(&self, items: &[T]) -> wgpu::Buffer {

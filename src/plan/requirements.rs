@@ -346,7 +346,7 @@ fn requested(request: &TableRequest, scene: &Scene, tolerance: f64) -> Result<Ta
     let table = table.with_rule(request.rule.unwrap_or(Rule::Warped))?;
     let table = table.with_tolerance(request.tolerance.unwrap_or(tolerance));
     if request.auto.is_empty() {
-        return Ok(table.with_storage(request.storage.unwrap_or_default()));
+        return table.with_storage(request.storage.unwrap_or_default()).checked();
     }
     optimise(table, &request.auto, request.storage)?.checked()
 }

@@ -1,0 +1,149 @@
+//! How fast values are written: a GGX RGB table of 64 × 256 × 512 beside a plain fill of the same bytes in
+//! the same layout, warm, in one run. `cargo run --release --example fill [-- DEVICE]`
+
+use gonio::axis::{Axis, Variable};
+use gonio::gpu::{Baker, Device, DeviceChoice};
+use gonio::plan::{Lobe, TablePlan};
+use gonio::{models, quantity, wgpu};
+use std::time::Instant;
+
+const SHAPE: [usize; 3] = [64, 256, 512];
+const WARM: usize = 15;
+
+/// Each invocation writes `each` vectors: side by side as the value kernel does, or a whole dispatch apart.
+const FILL: &str = "
+@group(0) @binding(0) var<storage, read_write> values: array<vec4f>;
+@compute @workgroup_size(WORKGROUP)
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let i = id.x + id.y * groups.x * WORKGROUPu;
+    let all = groups.x * groups.y * WORKGROUPu;
+    let v = vec4f(f32(i), 1.0, 2.0, 3.0);
+    STORES
+}";
+
+fn main() -> gonio::Result<()> {
+    let choice = std::env::args().nth(1).unwrap_or("auto".into()).parse().unwrap_or(DeviceChoice::Auto);
+    let (device, line) = Device::choose(&choice)?;
+    println!("{line}");
+    let Some(opened) = device else { return Ok(()) };
+    let (device, queue) = opened.wgpu();
+    let baker = Baker::new(device, queue);
+
+    let prepared = baker.prepare(&table()?)?;
+    let bytes = prepared.recorded.buffer.size();
+    let texels: usize = SHAPE.iter().product();
+    let values = time(device, queue, &|encoder| prepared.encode(encoder));
+
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: bytes,
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+        mapped_at_creation: false,
+    });
+    println!("{} bytes, {WARM} warm runs; ms", bytes);
+    println!("{:34} {:>8} {:>8} {:>8} {:>8}", "", "first", "min", "median", "GB/s");
+    let row = |what: &str, t: &Times| {
+        let rate = bytes as f64 / t.median / 1e9;
+        println!("{what:34} {:8.2} {:8.2} {:8.2} {rate:8.2}", 1e3 * t.first, 1e3 * t.min, 1e3 * t.median);
+    };
+    let mut best = f64::INFINITY;
+    for workgroup in [64, 128, 256] {
+        for (each, apart) in [(1, false), (3, false), (4, false), (4, true)] {
+            let fill = Fill::new(device, &buffer, workgroup, each, apart);
+            let times = time(device, queue, &|encoder| fill.encode(encoder));
+            let how = if apart { "apart" } else { "side by side" };
+            row(&format!("fill, workgroup {workgroup}, {each} vec4 {how}"), &times);
+            best = best.min(times.median);
+        }
+    }
+    row("GGX RGB values", &values);
+    // Again, as the machine has more than one speed.
+    let again = time(device, queue, &|encoder| prepared.encode(encoder));
+    row("GGX RGB values, again", &again);
+    let ours = values.median.min(again.median);
+    println!("{:.0} M RGB values/s", texels as f64 / ours / 1e6);
+    println!("{:.0} % of the best fill", 100.0 * best / ours);
+    Ok(())
+}
+
+/// 64 θi × 256 θe × 512 δφ of a gold-like lobe.
+fn table() -> gonio::Result<TablePlan> {
+    let variables = [Variable::ThetaI, Variable::ThetaE, Variable::DeltaPhi];
+    let axes =
+        variables.into_iter().zip(SHAPE).map(|(v, n)| Axis::natural(v, n)).collect::<gonio::Result<_>>()?;
+    let ggx = models::find("ggx")?;
+    let basis = TablePlan::basis("values", &quantity::BRDF, ggx, Some(0.5), axes)?;
+    let weights = [1.0, 0.78, 0.34].map(|f0| [f0, 1.0]).to_vec();
+    Ok(TablePlan {
+        channels: ["R", "G", "B"].map(String::from).to_vec(),
+        lobes: vec![Lobe { model: ggx, roughness: Some(0.5), weights }],
+        ..basis
+    })
+}
+
+/// Seconds of submit and wait.
+struct Times {
+    first: f64,
+    min: f64,
+    median: f64,
+}
+
+fn time(device: &wgpu::Device, queue: &wgpu::Queue, encode: &dyn Fn(&mut wgpu::CommandEncoder)) -> Times {
+    let once = || {
+        let mut encoder = device.create_command_encoder(&Default::default());
+        encode(&mut encoder);
+        let start = Instant::now();
+        queue.submit([encoder.finish()]);
+        let _ = device.poll(wgpu::PollType::wait_indefinitely());
+        start.elapsed().as_secs_f64()
+    };
+    let first = once();
+    let mut warm: Vec<_> = (0..WARM).map(|_| once()).collect();
+    warm.sort_by(f64::total_cmp);
+    Times { first, min: warm[0], median: warm[WARM / 2] }
+}
+
+struct Fill {
+    pipeline: wgpu::ComputePipeline,
+    bind_group: wgpu::BindGroup,
+    workgroups: [u32; 2],
+}
+
+impl Fill {
+    fn new(device: &wgpu::Device, buffer: &wgpu::Buffer, workgroup: u64, each: u64, apart: bool) -> Self {
+        let store = |k: u64| match apart {
+            true => format!("values[i + {k}u * all] = v;"),
+            false => format!("values[{each}u * i + {k}u] = v;"),
+        };
+        let stores: String = (0..each).map(store).collect();
+        let source = FILL.replace("WORKGROUP", &workgroup.to_string()).replace("STORES", &stores);
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: None,
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: None,
+            layout: None,
+            module: &module,
+            entry_point: None,
+            compilation_options: Default::default(),
+            cache: None,
+        });
+        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
+        });
+        let groups = buffer.size() / 16 / each / workgroup;
+        // Powers of two times three: whole rows within what a dimension holds.
+        let rows = groups.div_ceil(65_535).next_power_of_two();
+        Self { pipeline, bind_group, workgroups: [(groups / rows) as u32, rows as u32] }
+    }
+
+    fn encode(&self, encoder: &mut wgpu::CommandEncoder) {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.bind_group, &[]);
+        pass.dispatch_workgroups(self.workgroups[0], self.workgroups[1], 1);
+    }
+}
