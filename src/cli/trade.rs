@@ -52,9 +52,9 @@ Examples:
   gonio trade --quantity rho_dh --model ggx --size 64 --budget 20s --out trade
   gonio trade dfg.toml --device cpu --out trade
 
-Methods: warped (this project's), gauss and grid (over θ and φ), hammersley (what most bakers do), vndf
-(visible normals) and random. A point is marked * where nothing measured is both faster and more exact, and
-~ where only the subset was computed and its time is extrapolated.
+Methods: warped (this project's), gauss and grid (over θ and φ), hammersley (what most bakers do),
+vndf (visible normals) and random. A point is marked * where nothing measured is both faster and
+more exact, and ~ where only the subset was computed and its time is extrapolated.
 
 Exit codes: 0 success, 2 bad input, 3 no device, 130 interrupted";
 
