@@ -88,6 +88,13 @@ pub enum ErrorKind {
     Relative,
 }
 
+/// The largest differences of two tables' texels: of those that were kept, and of those that were taken
+/// from the other; 0 where there are none.
+pub(crate) struct Taken {
+    pub kept: f64,
+    pub largest: f64,
+}
+
 impl Values {
     /// How many.
     pub fn len(&self) -> usize {
@@ -132,17 +139,18 @@ impl Values {
         }
     }
 
-    /// Takes the values of `other` for every texel of so many channels where `misses` says so of the
-    /// largest difference between both. Returns the largest difference of the texels that stay.
-    pub(crate) fn take_where(&mut self, other: &Self, channels: usize, misses: impl Fn(f64) -> bool) -> f64 {
-        let mut left: f64 = 0.0;
+    /// Takes the values of `other` for every texel of so many channels where both differ by more than
+    /// `limit`.
+    pub(crate) fn take_beyond(&mut self, limit: f64, other: &Self, channels: usize) -> Taken {
+        let mut taken = Taken { kept: 0.0, largest: 0.0 };
         for texel in 0..self.len() / channels {
             let range = texel * channels..(texel + 1) * channels;
             let difference = range.clone().map(|k| (self.get(k) - other.get(k)).abs()).fold(0.0, f64::max);
-            if !misses(difference) {
-                left = left.max(difference);
+            if difference <= limit {
+                taken.kept = taken.kept.max(difference);
                 continue;
             }
+            taken.largest = taken.largest.max(difference);
             match (&mut *self, other) {
                 (Self::F32(to), Self::F32(from)) => to[range.clone()].copy_from_slice(&from[range]),
                 (Self::F64(to), Self::F64(from)) => to[range.clone()].copy_from_slice(&from[range]),
@@ -150,7 +158,7 @@ impl Values {
                 _ => {}
             }
         }
-        left
+        taken
     }
 
     /// Rounded to f32, to the nearest.
@@ -248,4 +256,17 @@ pub fn indices(shape: &[usize], mut flat: usize) -> Vec<usize> {
         flat /= n;
     }
     indices
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_texels_that_differ_too_much_are_taken() {
+        let mut values = Values::F64(vec![1.0, 1.0, 2.0, 2.0, 3.0, 3.0]);
+        let taken = values.take_beyond(0.1, &Values::F64(vec![1.0, 1.05, 2.0, 2.5, 3.0, 3.0]), 2);
+        assert_eq!(values, Values::F64(vec![1.0, 1.0, 2.0, 2.5, 3.0, 3.0]));
+        assert!((taken.kept - 0.05).abs() < 1e-12 && (taken.largest - 0.5).abs() < 1e-12);
+    }
 }

@@ -15,6 +15,7 @@ use crate::cpu;
 use crate::error::{Error, Result};
 use crate::gpu::{Device, DeviceChoice};
 use crate::interpolation;
+use crate::models::FINEST;
 use crate::plan::{Precision, Rule, STORED_F32, TablePlan, VALUE_F32};
 use crate::quantity::Evaluation;
 use crate::storage::{Storage, Stored};
@@ -108,7 +109,12 @@ impl Evaluator {
             && plan.rule == Rule::Warped
             && plan.quantity.evaluation != Evaluation::Value
         {
-            estimate = Some(path.certify(plan, &mut values, stages, &tick)?);
+            // The finest rule has none beyond it to be checked by: comparing it with itself proves nothing.
+            let finest = plan.rule_tolerance() <= FINEST;
+            estimate = match finest {
+                true => None,
+                false => Some(path.certify(plan, &mut values, stages, &tick)?),
+            };
         }
 
         observer.begin(&format!("checking {}", plan.name));
@@ -192,7 +198,7 @@ impl Path<'_> {
 
     /// Checks a table by the rule of a tenth of its tolerance. Texels that differ by more than half the
     /// tolerance are redone: they take the finer rule's value, which is then checked by the next.
-    /// Returns the largest difference that is left.
+    /// Returns the largest difference that is left, which counts values that nothing has checked yet.
     fn certify(
         self,
         plan: &TablePlan,
@@ -202,15 +208,13 @@ impl Path<'_> {
     ) -> Result<f64> {
         const TRIES: i32 = 3;
         let mut spent = Stages::default();
-        let mut left = f64::INFINITY;
+        let mut left = 0.0;
         for finer in 1..=TRIES {
-            let plan = plan.clone().with_tolerance(plan.tolerance * 0.1f64.powi(finer));
-            let second = self.evaluate(&plan, &mut spent, tick)?;
-            let before = values.clone();
-            left = values.take_where(&second, plan.channels.len(), |difference| {
-                difference > 0.5 * plan.tolerance / 0.1f64.powi(finer)
-            });
-            if *values == before {
+            let second = plan.clone().with_tolerance(plan.tolerance * 0.1f64.powi(finer));
+            let second = self.evaluate(&second, &mut spent, tick)?;
+            let taken = values.take_beyond(0.5 * plan.tolerance, &second, plan.channels.len());
+            left = taken.kept.max(taken.largest);
+            if taken.largest == 0.0 {
                 break;
             }
         }

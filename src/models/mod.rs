@@ -111,6 +111,9 @@ pub const ALPHA_MIN_INTEGRAL: f64 = 1e-12;
 pub static MODELS: [&Model; 4] =
     [&diffuse::lambert::MODEL, &diffuse::gltf_diffuse::MODEL, &ggx::MODEL, &mirror::MODEL];
 
+/// The finest tolerance that the tables of node counts know.
+pub(crate) const FINEST: f64 = 1e-10;
+
 /// The index of a tolerance in the tables of node counts, which are for 1e-1 … 1e-10: that of the power
 /// of ten at or below it.
 pub(crate) fn decade(tolerance: f64) -> usize {
