@@ -60,9 +60,7 @@ impl Work {
         };
         Self { alphas, kind }
     }
-}
 
-impl Work {
     /// Evaluations of the integrand, or of values, for the whole table.
     pub fn evaluations(&self) -> u64 {
         let rows = self.alphas.len();

@@ -246,7 +246,6 @@ impl Baker {
         steps: &mut Vec<Step>,
     ) -> Result<()> {
         let pipeline = self.pipeline(stage.kernel, stage.model, stage.channels, stage.precision)?;
-        let layout = pipeline.get_bind_group_layout(0);
         if let (Some(rows), [quads]) = (&stage.rows, &stage.inputs[..]) {
             return self.value_steps(stage, &pipeline, (rows, quads), units, output, steps);
         }
@@ -260,20 +259,9 @@ impl Baker {
             let job = self.init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
             let buffers =
                 [&job].into_iter().chain(&stage.inputs).chain(more_inputs.iter().copied()).chain([output]);
-            let entries: Vec<_> = (0..)
-                .zip(buffers)
-                .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                    binding,
-                    resource: buffer.as_entire_binding(),
-                })
-                .collect();
             steps.push(Step {
                 pipeline: pipeline.clone(),
-                bind_group: self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                    label: None,
-                    layout: &layout,
-                    entries: &entries,
-                }),
+                bind_group: self.bind(&pipeline, buffers.map(wgpu::Buffer::as_entire_binding)),
                 workgroups: count((end - first).div_ceil(WORKGROUP))?,
                 evaluations: ((end - first) * stage.cost) as u64,
             });
@@ -316,17 +304,9 @@ impl Baker {
                     window(quads, quad),
                     output.as_entire_binding(),
                 ];
-                let entries: Vec<_> = (0..)
-                    .zip(resources)
-                    .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-                    .collect();
                 steps.push(Step {
                     pipeline: pipeline.clone(),
-                    bind_group: self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                        label: None,
-                        layout: &pipeline.get_bind_group_layout(0),
-                        entries: &entries,
-                    }),
+                    bind_group: self.bind(pipeline, resources),
                     workgroups: count(invocations.div_ceil(WORKGROUP))?,
                     evaluations: (invocations * stage.cost) as u64,
                 });
@@ -366,6 +346,18 @@ impl Baker {
         });
         pipelines.insert(key, pipeline.clone());
         Ok(pipeline)
+    }
+
+    /// The only bind group of a kernel: its resources in the order of their bindings.
+    pub(super) fn bind<'a>(
+        &self,
+        pipeline: &wgpu::ComputePipeline,
+        resources: impl IntoIterator<Item = wgpu::BindingResource<'a>>,
+    ) -> wgpu::BindGroup {
+        let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
+        let entries: Vec<_> = (0..).zip(resources).map(entry).collect();
+        let layout = &pipeline.get_bind_group_layout(0);
+        self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
     }
 
     /// Seconds spent so far on composing and validating shaders.

@@ -5,7 +5,7 @@
 //! no switch over models is left for the device to run.
 
 use crate::error::{Error, Result};
-use crate::models::{Integral, Model, Part};
+use crate::models::{Integral, Model, Part, part};
 use crate::plan::Precision;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
@@ -45,85 +45,76 @@ pub(super) fn vectors(precision: Precision) -> usize {
     (1 << 16) / (4 * precision.bytes())
 }
 
-macro_rules! shader {
-    ($name:literal) => {
-        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $name, ".wgsl"))
-    };
-}
-
 /// Rows and quads of azimuths that one dispatch of values takes: 32 bytes each in a uniform buffer, of which
 /// every device binds 64 KiB.
 pub(super) const VALUE_WINDOW: usize = 1024;
 
 /// The WGSL of `kernel` for `model` (none: kernels that evaluate no model) and so many channels.
 pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize, precision: Precision) -> String {
-    match kernel {
-        Kernel::Pack => return shader!("kernel/pack").into(),
-        Kernel::Fill => return shader!("probe/fill").into(),
-        Kernel::MultiplyAdd => return shader!("probe/multiply_add").into(),
-        _ => {}
+    let files = kernel.files(channels);
+    if kernel.is_plain() {
+        return files.iter().map(|part| part.wgsl).collect();
     }
     // One source for both: no kernel calls a transcendental built-in, which f64 lacks.
     let real = precision.name();
     let mut source = format!("alias real = {real};\nalias real2 = vec2<real>;\nalias real4 = vec4<real>;\n");
-    if matches!(kernel, Kernel::Slopes | Kernel::SlopesOfMany) {
-        source += &format!("const VECTORS = {}u;\n", vectors(precision));
-    }
-    let mut add = |name: &str, wgsl: &str| source.push_str(&format!("\n// ---- {name}\n{wgsl}"));
-    add("kernel/job", shader!("kernel/job"));
-    if let Some(model) = model {
-        add("pair", shader!("pair"));
-        for Part { name, wgsl } in model.parts {
-            add(name, wgsl);
-        }
-    }
-    if let Kernel::Values | Kernel::AddValues = kernel {
-        let constants =
-            format!("const ADD = {};\nconst WINDOW = {VALUE_WINDOW}u;\n", kernel == Kernel::AddValues);
-        add("constants", &constants);
-        match channels {
-            1 => add("kernel/store_1", shader!("kernel/store_1")),
-            2 => add("kernel/store_2", shader!("kernel/store_2")),
-            _ => add("kernel/store_3", shader!("kernel/store_3")),
-        }
-    }
-    if let (
-        Kernel::Ndf | Kernel::Vndf | Kernel::Random,
-        Some(Model { integral: Integral::Slopes(slopes), .. }),
-    ) = (kernel, model)
-    {
-        let Part { name, wgsl } = slopes.sampling.part;
-        add(name, wgsl);
-        add("kernel/sampling", shader!("kernel/sampling"));
-    }
     match kernel {
-        Kernel::Ndf => {
-            add("sampling/ndf", shader!("sampling/ndf"));
-            add("sampling/tabulated", shader!("sampling/tabulated"));
+        Kernel::Slopes | Kernel::SlopesOfMany => {
+            source += &format!("const VECTORS = {}u;\n", vectors(precision));
         }
-        Kernel::Vndf => {
-            add("sampling/vndf", shader!("sampling/vndf"));
-            add("sampling/tabulated", shader!("sampling/tabulated"));
+        Kernel::Values | Kernel::AddValues => {
+            let add = kernel == Kernel::AddValues;
+            source += &format!("const ADD = {add};\nconst WINDOW = {VALUE_WINDOW}u;\n");
         }
-        Kernel::Random => {
-            add("sampling/vndf", shader!("sampling/vndf"));
-            add("sampling/random", shader!("sampling/random"));
-        }
-        Kernel::Values | Kernel::AddValues => add("kernel/values", shader!("kernel/values")),
-        Kernel::Slopes => {
-            add("kernel/slopes_uniform", shader!("kernel/slopes_uniform"));
-            add("kernel/slopes", shader!("kernel/slopes"));
-        }
-        Kernel::SlopesOfMany => {
-            add("kernel/slopes_storage", shader!("kernel/slopes_storage"));
-            add("kernel/slopes", shader!("kernel/slopes"));
-        }
-        Kernel::Product => add("kernel/product", shader!("kernel/product")),
-        Kernel::Analytic => add("kernel/analytic", shader!("kernel/analytic")),
-        Kernel::Sum => add("kernel/sum", shader!("kernel/sum")),
-        Kernel::Pack | Kernel::Fill | Kernel::MultiplyAdd => {}
+        _ => {}
     }
+    let mut add = |part: &Part| source += &format!("\n// ---- {}\n{}", part.name, part.wgsl);
+    add(&part!("kernel/job"));
+    if let Some(model) = model {
+        add(&part!("pair"));
+        model.parts.iter().for_each(&mut add);
+        if let (true, Integral::Slopes(slopes)) = (kernel.is_sampling(), model.integral) {
+            add(&slopes.sampling.part);
+        }
+    }
+    files.iter().for_each(add);
     source
+}
+
+impl Kernel {
+    /// Its own files, in order.
+    fn files(self, channels: usize) -> &'static [Part] {
+        match (self, channels) {
+            (Self::Values | Self::AddValues, 1) => &[part!("kernel/store_1"), part!("kernel/values")],
+            (Self::Values | Self::AddValues, 2) => &[part!("kernel/store_2"), part!("kernel/values")],
+            (Self::Values | Self::AddValues, _) => &[part!("kernel/store_3"), part!("kernel/values")],
+            (Self::Slopes, _) => &[part!("kernel/slopes_uniform"), part!("kernel/slopes")],
+            (Self::SlopesOfMany, _) => &[part!("kernel/slopes_storage"), part!("kernel/slopes")],
+            (Self::Product, _) => &[part!("kernel/product")],
+            (Self::Ndf, _) => &[part!("kernel/sampling"), part!("sampling/ndf"), part!("sampling/tabulated")],
+            (Self::Vndf, _) => {
+                &[part!("kernel/sampling"), part!("sampling/vndf"), part!("sampling/tabulated")]
+            }
+            (Self::Random, _) => {
+                &[part!("kernel/sampling"), part!("sampling/vndf"), part!("sampling/random")]
+            }
+            (Self::Analytic, _) => &[part!("kernel/analytic")],
+            (Self::Sum, _) => &[part!("kernel/sum")],
+            (Self::Pack, _) => &[part!("kernel/pack")],
+            (Self::Fill, _) => &[part!("probe/fill")],
+            (Self::MultiplyAdd, _) => &[part!("probe/multiply_add")],
+        }
+    }
+
+    /// Whether it knows no job, model or precision: its file is all of it.
+    fn is_plain(self) -> bool {
+        matches!(self, Self::Pack | Self::Fill | Self::MultiplyAdd)
+    }
+
+    /// Whether it draws samples.
+    fn is_sampling(self) -> bool {
+        matches!(self, Self::Ndf | Self::Vndf | Self::Random)
+    }
 }
 
 /// Parses and validates a composed shader before any device sees it: for what every WebGPU device has,

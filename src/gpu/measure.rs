@@ -103,11 +103,7 @@ impl Device {
         let Baker { device, queue, .. } = &self.baker;
         let pipeline = self.baker.pipeline(kernel, None, 0, Precision::F32)?;
         let buffer = self.baker.output(bytes);
-        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
-        });
+        let bind_group = self.baker.bind(&pipeline, [buffer.as_entire_binding()]);
         let mut least = f64::INFINITY;
         for run in 0..=RUNS {
             let start = Instant::now();

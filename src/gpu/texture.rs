@@ -108,20 +108,7 @@ impl Baker {
         let texels = self.output(pitch as usize * height as usize);
         let pipeline = self.pipeline(Kernel::Pack, None, 0, Precision::F32)?;
         let buffers = [&packing, &recorded.buffer, &texels];
-        let bind = |(binding, buffer): (u32, &wgpu::Buffer)| (binding, buffer.clone());
-        let buffers: Vec<_> = (0..).zip(buffers).map(bind).collect();
-        let entries: Vec<_> = buffers
-            .iter()
-            .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                binding: *binding,
-                resource: buffer.as_entire_binding(),
-            })
-            .collect();
-        let bind_group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &entries,
-        });
+        let bind_group = self.bind(&pipeline, buffers.map(wgpu::Buffer::as_entire_binding));
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, &bind_group, &[]);

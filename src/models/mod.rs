@@ -170,4 +170,4 @@ macro_rules! part {
         }
     };
 }
-use part;
+pub(crate) use part;
