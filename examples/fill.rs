@@ -2,13 +2,13 @@
 //! the same layout, warm, in one run. `cargo run --release --example fill [-- DEVICE]`
 
 use gonio::axis::{Axis, Variable};
-use gonio::gpu::{Baker, Device, DeviceChoice};
+use gonio::gpu::{Baker, Device, DeviceChoice, Prepared};
 use gonio::plan::{Lobe, TablePlan};
 use gonio::{models, quantity, wgpu};
 use std::time::Instant;
 
 const SHAPE: [usize; 3] = [64, 256, 512];
-const WARM: usize = 15;
+const ROUNDS: usize = 31;
 
 /// Each invocation writes `each` vectors: side by side as the value kernel does, or a whole dispatch apart.
 const FILL: &str = "
@@ -32,38 +32,46 @@ fn main() -> gonio::Result<()> {
     let prepared = baker.prepare(&table()?)?;
     let bytes = prepared.recorded.buffer.size();
     let texels: usize = SHAPE.iter().product();
-    let values = time(device, queue, &|encoder| prepared.encode(encoder));
-
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
         size: bytes,
         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
         mapped_at_creation: false,
     });
-    println!("{} bytes, {WARM} warm runs; ms", bytes);
-    println!("{:34} {:>8} {:>8} {:>8} {:>8}", "", "first", "min", "median", "GB/s");
-    let row = |what: &str, t: &Times| {
-        let rate = bytes as f64 / t.median / 1e9;
-        println!("{what:34} {:8.2} {:8.2} {:8.2} {rate:8.2}", 1e3 * t.first, 1e3 * t.min, 1e3 * t.median);
-    };
-    let mut best = f64::INFINITY;
+    let mut runs = vec![("GGX RGB values".to_owned(), Run::Values(prepared))];
     for workgroup in [64, 128, 256] {
         for (each, apart) in [(1, false), (3, false), (4, false), (4, true)] {
-            let fill = Fill::new(device, &buffer, workgroup, each, apart);
-            let times = time(device, queue, &|encoder| fill.encode(encoder));
             let how = if apart { "apart" } else { "side by side" };
-            row(&format!("fill, workgroup {workgroup}, {each} vec4 {how}"), &times);
-            best = best.min(times.median);
+            let fill = Fill::new(device, &buffer, workgroup, each, apart);
+            runs.push((format!("fill, workgroup {workgroup}, {each} vec4 {how}"), Run::Fill(fill)));
         }
     }
-    row("GGX RGB values", &values);
-    // Again, as the machine has more than one speed.
-    let again = time(device, queue, &|encoder| prepared.encode(encoder));
-    row("GGX RGB values, again", &again);
-    let ours = values.median.min(again.median);
-    println!("{:.0} M RGB values/s", texels as f64 / ours / 1e6);
-    println!("{:.0} % of the best fill", 100.0 * best / ours);
+
+    // In turns, as the machine may have more than one speed.
+    let first: Vec<_> = runs.iter().map(|(_, run)| run.time(device, queue)).collect();
+    let rounds: Vec<Vec<f64>> =
+        (0..ROUNDS).map(|_| runs.iter().map(|(_, run)| run.time(device, queue)).collect()).collect();
+    println!("{bytes} bytes, {ROUNDS} rounds; ms");
+    println!("{:40} {:>8} {:>8} {:>8} {:>8}", "", "first", "min", "median", "GB/s");
+    let times = |k: usize| sorted(rounds.iter().map(|round| round[k]).collect());
+    for (k, (what, _)) in runs.iter().enumerate() {
+        let (times, ms) = (times(k), 1e3);
+        let (min, median) = (times[0], times[ROUNDS / 2]);
+        let rate = bytes as f64 / median / 1e9;
+        println!("{what:40} {:8.2} {:8.2} {:8.2} {rate:8.2}", ms * first[k], ms * min, ms * median);
+    }
+    let median = |k: usize| times(k)[ROUNDS / 2];
+    let best = (1..runs.len()).min_by(|&a, &b| median(a).total_cmp(&median(b))).unwrap_or(1);
+    let shares = sorted(rounds.iter().map(|round| round[best] / round[0]).collect());
+    println!("{:.0} M RGB values/s", texels as f64 / median(0) / 1e6);
+    let [low, middle, high] = [ROUNDS / 4, ROUNDS / 2, 3 * ROUNDS / 4].map(|k| 100.0 * shares[k]);
+    println!("{middle:.0} % of the best fill; quartiles of the rounds {low:.0} and {high:.0} %");
     Ok(())
+}
+
+fn sorted(mut values: Vec<f64>) -> Vec<f64> {
+    values.sort_by(f64::total_cmp);
+    values
 }
 
 /// 64 θi × 256 θe × 512 δφ of a gold-like lobe.
@@ -81,26 +89,25 @@ fn table() -> gonio::Result<TablePlan> {
     })
 }
 
-/// Seconds of submit and wait.
-struct Times {
-    first: f64,
-    min: f64,
-    median: f64,
+/// What is timed.
+enum Run {
+    Values(Prepared),
+    Fill(Fill),
 }
 
-fn time(device: &wgpu::Device, queue: &wgpu::Queue, encode: &dyn Fn(&mut wgpu::CommandEncoder)) -> Times {
-    let once = || {
+impl Run {
+    /// Seconds of submit and wait.
+    fn time(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> f64 {
         let mut encoder = device.create_command_encoder(&Default::default());
-        encode(&mut encoder);
+        match self {
+            Self::Values(prepared) => prepared.encode(&mut encoder),
+            Self::Fill(fill) => fill.encode(&mut encoder),
+        }
         let start = Instant::now();
         queue.submit([encoder.finish()]);
         let _ = device.poll(wgpu::PollType::wait_indefinitely());
         start.elapsed().as_secs_f64()
-    };
-    let first = once();
-    let mut warm: Vec<_> = (0..WARM).map(|_| once()).collect();
-    warm.sort_by(f64::total_cmp);
-    Times { first, min: warm[0], median: warm[WARM / 2] }
+    }
 }
 
 struct Fill {

@@ -2,7 +2,6 @@
 
 use crate::models::ALPHA_MIN_INTEGRAL;
 use crate::plan::{Lobe, TablePlan};
-use crate::slopes::{TILE_ALPHAS, TILE_COLUMNS};
 use crate::work::{Inner, Work, WorkKind};
 use rayon::prelude::*;
 
@@ -88,12 +87,12 @@ fn integrate(work: &Work, inner: &Inner, lobe: &Lobe, row: usize, k: usize) -> [
         Inner::Slopes(work) if alpha < ALPHA_MIN_INTEGRAL => return (work.slopes.mirror_limit)(work.mus[k]),
         Inner::Slopes(work) => {
             let mu = work.mus[k];
-            let sides = work.columns[k].iter().zip(work.tile(row / TILE_ALPHAS, k / TILE_COLUMNS));
-            for (azimuths, nodes) in sides {
-                for &[c, t_max, t_max_inverse, weight] in &work.azimuths[azimuths.clone()] {
-                    let end = (work.slopes.end)(t_max, alpha);
-                    for node in &work.nodes[nodes.clone()] {
-                        let f = (work.slopes.integrand)(end * node.x, [c, t_max, t_max_inverse], mu, alpha);
+            let map = work.slopes.map(work.tolerance);
+            for (azimuths, nodes) in work.sides(row, k) {
+                for &[c, t_max, t_max_inverse, weight] in azimuths {
+                    let end = (map.end)(t_max, alpha);
+                    for node in nodes {
+                        let f = (map.integrand)(end * node.x, [c, t_max, t_max_inverse], mu, alpha);
                         add(weight * end * node.weight, f);
                     }
                 }

@@ -1,90 +1,118 @@
 //! The warped rule of microfacet lobes: which azimuths and how many nodes for each tile of texels.
 
-use crate::models::Slopes;
+use crate::models::{SlopeCounts, Slopes, is_fine};
 use crate::quadrature::{Node, gauss_legendre};
+use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::ops::Range;
 
 /// Inner integrals in slopes of ωm, for each (α, μ).
 pub(crate) struct SlopeWork {
     pub slopes: &'static Slopes,
+    pub tolerance: f64,
     pub mus: Vec<f64>,
-    /// (c, t_max, 1/t_max, weight), column by column.
+    /// (c, t_max, 1/t_max, weight): for each column of a tile as many as the tile takes, one after the other.
     pub azimuths: Vec<[f64; 4]>,
-    /// For each column the azimuths with cos φ > 0, and those with cos φ < 0.
-    pub columns: Vec<[Range<usize>; 2]>,
-    /// For each tile, α group by α group, the number of nodes on each side.
-    tiles: Vec<[usize; 2]>,
-    /// The Gauss–Legendre rules in use, one after the other, in the order of `rules`.
+    /// Gauss–Legendre rules, one after the other.
     pub nodes: Vec<Node>,
-    rules: Vec<Range<usize>>,
+    /// α group by α group, what the tiles take where cos φ > 0 and where it is < 0.
+    pub tiles: Vec<[Side; 2]>,
 }
 
-/// Texels that share their node counts: so many α …
+/// Half of the azimuths of a tile.
+#[derive(Clone, Copy)]
+pub(crate) struct Side {
+    /// Of the tile's first column.
+    pub first_azimuth: usize,
+    pub first_node: usize,
+    pub counts: SlopeCounts,
+}
+
+/// Texels that share their counts: so many α …
 pub(crate) const TILE_ALPHAS: usize = 4;
 /// … times so many μ.
 pub(crate) const TILE_COLUMNS: usize = 8;
 
 impl SlopeWork {
     pub fn new(slopes: &'static Slopes, mus: Vec<f64>, alphas: &[f64], tolerance: f64) -> Self {
-        let groups: Vec<_> = mus.chunks(TILE_COLUMNS).collect();
-        let (mut azimuths, mut columns) = (Vec::new(), Vec::new());
-        for group in &groups {
-            let counts = most(group, alphas, |mu, alpha| (slopes.azimuths)(mu, alpha, tolerance));
-            for &mu in *group {
-                columns.push([(1.0, counts[0]), (-1.0, counts[1])].map(|(sign, n)| {
-                    let first = azimuths.len();
-                    azimuths.extend(side(mu, sign, n, tolerance));
-                    first..azimuths.len()
+        let (mut azimuths, mut nodes) = (Vec::new(), Vec::new());
+        // Where each rule is that some tile takes.
+        let (mut azimuths_of, mut nodes_of) = (HashMap::new(), HashMap::new());
+        let mut tiles = Vec::new();
+        for alphas in alphas.chunks(TILE_ALPHAS) {
+            for (group, mus) in mus.chunks(TILE_COLUMNS).enumerate() {
+                let counts = most(mus, alphas, |mu, alpha| (slopes.counts)(mu, alpha, tolerance));
+                tiles.push([(1.0, counts[0]), (-1.0, counts[1])].map(|(sign, counts)| Side {
+                    first_azimuth: *azimuths_of
+                        .entry((group, sign > 0.0, counts.azimuths))
+                        .or_insert_with(|| {
+                            let first = azimuths.len();
+                            azimuths.extend(mus.iter().flat_map(|&mu| side(mu, sign, counts.azimuths, tolerance)));
+                            first
+                        }),
+                    first_node: *nodes_of.entry(counts.nodes).or_insert_with(|| {
+                        let first = nodes.len();
+                        nodes.extend(gauss_legendre(counts.nodes));
+                        first
+                    }),
+                    counts,
                 }));
             }
         }
-        let tiles: Vec<_> = alphas
-            .chunks(TILE_ALPHAS)
-            .flat_map(|alphas| groups.iter().map(move |group| (group, alphas)))
-            .map(|(group, alphas)| most(group, alphas, |mu, alpha| (slopes.nodes)(mu, alpha, tolerance)))
-            .collect();
-        let largest = tiles.as_flattened().iter().copied().max().unwrap_or(0);
-        let (mut nodes, mut rules) = (Vec::new(), vec![0..0; largest + 1]);
-        for (n, rule) in rules.iter_mut().enumerate() {
-            if tiles.as_flattened().contains(&n) {
-                *rule = nodes.len()..nodes.len() + n;
-                nodes.extend(gauss_legendre(n));
-            }
-        }
-        Self { slopes, mus, azimuths, columns, tiles, nodes, rules }
+        Self { slopes, tolerance, mus, azimuths, nodes, tiles }
     }
 
-    /// The nodes of both sides, for a tile.
-    pub fn tile(&self, alpha_group: usize, column_group: usize) -> [Range<usize>; 2] {
-        let tile = self.tiles[alpha_group * self.mus.len().div_ceil(TILE_COLUMNS) + column_group];
-        tile.map(|n| self.rules[n].clone())
-    }
-
-    /// Tiles, α group by α group.
-    pub fn tiles(&self) -> impl Iterator<Item = [Range<usize>; 2]> {
-        self.tiles.iter().map(|tile| tile.map(|n| self.rules[n].clone()))
+    /// What a texel takes, on both sides: azimuths, and the nodes of each.
+    pub fn sides(&self, row: usize, column: usize) -> [(&[[f64; 4]], &[Node]); 2] {
+        let groups = self.mus.len().div_ceil(TILE_COLUMNS);
+        self.tiles[row / TILE_ALPHAS * groups + column / TILE_COLUMNS].map(|side| {
+            let SlopeCounts { azimuths, nodes } = side.counts;
+            let first = side.first_azimuth + column % TILE_COLUMNS * azimuths;
+            (&self.azimuths[first..][..azimuths], &self.nodes[side.first_node..][..nodes])
+        })
     }
 
     /// Evaluations of the integrand for the costliest texel.
     pub fn largest_cost(&self) -> usize {
-        let nodes = self.tiles.as_flattened().iter().copied().max().unwrap_or(0);
-        let azimuths = self.columns.iter().map(|[near, far]| near.len() + far.len()).max().unwrap_or(0);
-        (nodes * azimuths).max(1)
+        self.tiles.iter().map(|tile| cost(*tile)).max().unwrap_or(1)
+    }
+
+    /// Evaluations of the integrand for so many rows of α.
+    pub fn evaluations(&self, rows: usize) -> usize {
+        let groups = self.mus.len().div_ceil(TILE_COLUMNS);
+        let share = |first: usize, of: usize, all: usize| of.min(all - first * of);
+        let texels = |tile: usize| {
+            share(tile / groups, TILE_ALPHAS, rows) * share(tile % groups, TILE_COLUMNS, self.mus.len())
+        };
+        self.tiles.iter().enumerate().map(|(k, tile)| texels(k) * cost(*tile)).sum()
     }
 }
 
+/// Evaluations of the integrand for a texel of a tile.
+fn cost(tile: [Side; 2]) -> usize {
+    tile.map(|side| side.counts.azimuths * side.counts.nodes).iter().sum()
+}
+
 /// The largest counts over all of (μ, α).
-fn most(mus: &[f64], alphas: &[f64], counts: impl Fn(f64, f64) -> [usize; 2]) -> [usize; 2] {
+fn most(
+    mus: &[f64],
+    alphas: &[f64],
+    counts: impl Fn(f64, f64) -> [SlopeCounts; 2],
+) -> [SlopeCounts; 2] {
     let all = mus.iter().flat_map(|&mu| alphas.iter().map(move |&alpha| (mu, alpha)));
-    all.map(|(mu, alpha)| counts(mu, alpha)).fold([1, 1], |a, b| [a[0].max(b[0]), a[1].max(b[1])])
+    let one = SlopeCounts { azimuths: 1, nodes: 1 };
+    all.map(|(mu, alpha)| counts(mu, alpha)).fold([one; 2], |a, b| {
+        [0, 1].map(|k| SlopeCounts {
+            azimuths: a[k].azimuths.max(b[k].azimuths),
+            nodes: a[k].nodes.max(b[k].nodes),
+        })
+    })
 }
 
 /// Azimuths φ = π/2 ∓ d sinh u of ωm from ωe's, u ∈ [0, asinh(π/2d)]: the horizon turns within μ of
 /// φ = π/2. c = tan θe cos φ; t_max = c + √(c² + 1), without cancellation where c < 0.
 pub(crate) fn side(mu: f64, sign: f64, n: usize, tolerance: f64) -> impl Iterator<Item = [f64; 4]> {
     // Found by search: smaller wastes nodes on a turn that contributes nothing, larger misses it.
-    let d_min = if tolerance < 0.9e-6 { 1e-3 } else { 0.1 };
+    let d_min = if is_fine(tolerance) { 1e-3 } else { 0.1 };
     let tan = ((1.0 - mu) * (1.0 + mu)).sqrt() / mu;
     let d = mu.max(d_min);
     let u_max = (FRAC_PI_2 / d).asinh();

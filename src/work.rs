@@ -8,7 +8,7 @@ use crate::plan::{Lobe, Rule, TablePlan};
 use crate::quadrature::{Node, gauss_legendre, midpoint};
 use crate::quantity::Evaluation;
 use crate::sampling::{SampleWork, Sampler};
-use crate::slopes::{SlopeWork, TILE_ALPHAS, TILE_COLUMNS};
+use crate::slopes::SlopeWork;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::iter;
 
@@ -66,17 +66,7 @@ impl Work {
         let rows = self.alphas.len();
         let count = match &self.kind {
             WorkKind::Values { pairs, azimuths } => rows * pairs.len() * azimuths.len(),
-            WorkKind::Integrals { inner: Inner::Slopes(work), .. } => (0..rows)
-                .flat_map(|row| work.columns.iter().enumerate().map(move |(k, column)| (row, k, column)))
-                .map(|(row, k, column)| {
-                    let nodes = work.tile(row / TILE_ALPHAS, k / TILE_COLUMNS);
-                    column
-                        .iter()
-                        .zip(nodes)
-                        .map(|(azimuths, nodes)| azimuths.len() * nodes.len())
-                        .sum::<usize>()
-                })
-                .sum(),
+            WorkKind::Integrals { inner: Inner::Slopes(work), .. } => work.evaluations(rows),
             WorkKind::Integrals { inner, .. } => rows * inner.count() * inner.cost(),
         };
         count as u64

@@ -60,7 +60,7 @@ fn every_shader_is_portable() {
     for model in MODELS {
         let kernels: &[Kernel] = match model.name {
             "ggx" => {
-                &[Kernel::Values, Kernel::AddValues, Kernel::Product, Kernel::Slopes, Kernel::SlopesOfMany]
+                &[Kernel::Values, Kernel::AddValues, Kernel::Product, Kernel::Slopes, Kernel::FineSlopes]
             }
             "mirror" => &[Kernel::Product, Kernel::Analytic],
             _ => &[Kernel::Values, Kernel::AddValues, Kernel::Product],

@@ -1,8 +1,7 @@
 // Integrals that are known in closed form.
 
-@group(0) @binding(1) var<storage, read> alphas: array<real>;
-@group(0) @binding(2) var<storage, read> mus: array<real>;
-@group(0) @binding(3) var<storage, read_write> raw: array<real2>;
+@group(0) @binding(2) var<storage, read> alphas: array<real>;
+@group(0) @binding(3) var<storage, read> mus: array<real>;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -10,5 +9,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if invocation >= job.end {
         return;
     }
-    raw[invocation - job.base] = directional(mus[invocation % job.columns], alphas[invocation / job.columns]);
+    write(invocation - job.base, directional(mus[invocation % job.columns], alphas[invocation / job.columns]));
 }

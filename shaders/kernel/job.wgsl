@@ -1,16 +1,14 @@
 // What every kernel reads: which invocations this dispatch does, and how a lobe's components
-// (A, B) become channels.
+// (A, B) become channels. Binding 0 is the job, 1 the result; what a kernel reads follows.
 
 struct Job {
     weights: array<vec4f, 3>, // channel c = dot(weights[c].xy + weights[c].zw, (A, B)): the latter is what f32 drops
     first: u32,               // first invocation of this dispatch
     end: u32,                 // one past its last
     base: u32,                // the invocation whose result is the first of the output buffer
-    accumulate: u32,          // 1: add to what an earlier lobe wrote
     columns: u32,             // counts, by kernel
     azimuths: u32,
     nodes: u32,
-    pad: u32,
 }
 
 const INV_PI: real = 0.3183098861837907;

@@ -1,19 +1,17 @@
 // Hemispherical integrals over (θe, δφ), whatever the nodes: one invocation a (roughness, θi, θe),
 // which sums the azimuths in blocks, so that rounding grows with the root of their number.
 
-@group(0) @binding(1) var<storage, read> alphas: array<real>;
-@group(0) @binding(2) var<storage, read> pairs: array<Pair>;
-@group(0) @binding(3) var<storage, read> azimuths: array<Azimuth>;
-@group(0) @binding(4) var<storage, read_write> raw: array<real2>;
+@group(0) @binding(2) var<storage, read> alphas: array<real>;
+@group(0) @binding(3) var<storage, read> pairs: array<Pair>;
+@group(0) @binding(4) var<storage, read> azimuths: array<Azimuth>;
 
 const BLOCK = 32u;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    let invocation = job.first + id.x;
-    if invocation >= job.end {
-        return;
-    }
+    // What is beyond the end does the last one's work again: an early return would make software
+    // drivers mask every instruction.
+    let invocation = min(job.first + id.x, job.end - 1u);
     let pair = pairs[invocation % job.columns];
     let alpha = alphas[invocation / job.columns];
     var sum = real2();
@@ -25,5 +23,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
         sum += inner;
     }
-    raw[invocation - job.base] = sum;
+    write(invocation - job.base, sum);
 }

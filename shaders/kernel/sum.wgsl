@@ -1,9 +1,8 @@
 // The outer sum of an integral: each texel is a weighted sum of job.nodes raw results, in blocks,
 // turned into channels.
 
-@group(0) @binding(1) var<storage, read> outer: array<real>;
-@group(0) @binding(2) var<storage, read> raw: array<real2>;
-@group(0) @binding(3) var<storage, read_write> values: array<real>;
+@group(0) @binding(2) var<storage, read> outer: array<real>;
+@group(0) @binding(3) var<storage, read> raw: array<real2>;
 
 const BLOCK = 32u;
 
@@ -21,13 +20,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
         sum += inner;
     }
-    for (var c = 0u; c < job.columns; c++) {
-        let at = (texel - job.base) * job.columns + c;
-        let value = channel(c, sum);
-        if job.accumulate == 1u {
-            values[at] += value;
-        } else {
-            values[at] = value;
-        }
-    }
+    write(texel - job.base, sum);
 }

@@ -13,18 +13,18 @@ fn visibility(mu_i: real, mu_e: real, alpha: real) -> real {
 /// What `masking` needs of the fixed direction.
 struct Masked {
     mu: real,
-    root: real4,
-    a2: real4,
-    b2: real4,
+    root: real4, // (1 + 2Λ) μ
+    a2: real4,   // α²
+    b2: real4,   // (1 − α²) μ²
 }
 
 fn masked(mu: real, alpha: real4) -> Masked {
     let a2 = alpha * alpha;
-    let b2 = 1.0 - a2;
-    return Masked(mu, sqrt(a2 + b2 * (mu * mu)), a2, b2);
+    let b2 = (1.0 - a2) * (mu * mu);
+    return Masked(mu, sqrt(a2 + b2), a2, b2);
 }
 
-/// G2 = x / masking(x, y) · 2 μe, for μi = x/y: no division until the end.
+/// G2 = 2 μe x / masking(x, y), for μi = μe x/y: no division until the end.
 fn masking(x: real4, y: real4, e: Masked) -> real4 {
-    return x * e.root + e.mu * sqrt(e.a2 * y * y + e.b2 * x * x);
+    return x * e.root + sqrt(e.a2 * (y * y) + e.b2 * (x * x));
 }

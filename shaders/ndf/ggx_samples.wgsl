@@ -8,9 +8,15 @@
 //           f μi / p = F G2 (ωe·ωm) / (μ cos θm)
 //     vndf: p(ωm) = G1 D ωe·ωm / μ      (Heitz 2018, eq. 3)
 //           f μi / p = F G2 / G1
-// where with q = ωe·(x, ·, m), y = m² + t2 and z = 2qm − μy
-//     μi = z/y,  cos θm = m/√y,  ωe·ωm = q/√y,  G2 = 2μ z / masking(z, y),  G1 = 2μ / (μ + root).
+// where with q = ωe·(x, ·, m)/μ, y = m² + t2 and z = 2qm − y
+//     μi = μz/y,  cos θm = m/√y,  ωe·ωm = μq/√y,  G2 = 2μ z / masking(z, y),  G1 = 2μ / (μ + root).
 // ωi below the horizon, z < 0, counts as 0.
+
+/// An estimate: without Fresnel, and its part that F90 weighs.
+struct Estimate {
+    all: real4,
+    grazing: real4,
+}
 
 struct Facet {
     x: real4,
@@ -37,12 +43,12 @@ fn vndf_facet(u: real4, cos_phi: real4, e: Masked, s: real, alpha: real4) -> Fac
     return Facet(alpha * x, alpha * alpha * t2, m);
 }
 
-/// f μi / p: without Fresnel, and its part that F90 weighs.
-fn facet_estimate(facet: Facet, e: Masked, s: real) -> Slope {
-    let q = s * facet.x + e.mu * facet.m;
+/// f μi / p; `tan` is that of θe.
+fn facet_estimate(facet: Facet, e: Masked, tan: real) -> Estimate {
+    let q = tan * facet.x + facet.m;
     let y = facet.m * facet.m + facet.t2;
-    let z = max(2.0 * q * facet.m - e.mu * y, real4());
+    let z = max(2.0 * q * facet.m - y, real4());
     let all = z * facet_weight(q, facet.m, e) / masking(z, y, e);
-    let c = min(q * inverseSqrt(y), real4(1.0));
-    return Slope(all, all * fresnel_grazing(1.0 - c));
+    let c = min(e.mu * q * inverseSqrt(y), real4(1.0));
+    return Estimate(all, all * fresnel_grazing(1.0 - c));
 }

@@ -1,8 +1,6 @@
 // Draws from a generator, each texel's own: PCG-RXS-M-XS 32 (O'Neill 2014), seeded by its hash
 // (Jarzynski & Olano 2020).
 
-@group(0) @binding(3) var<storage, read_write> raw: array<real2>;
-
 var<private> state: vec4u;
 
 fn seed(texels: vec4u, chunk: u32) {

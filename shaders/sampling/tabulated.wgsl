@@ -1,7 +1,6 @@
 // Draws that all texels share, from the host, in f64 before they were rounded.
 
-@group(0) @binding(3) var<storage, read> draws: array<real2>;
-@group(0) @binding(4) var<storage, read_write> raw: array<real2>;
+@group(0) @binding(4) var<storage, read> draws: array<real2>;
 
 fn seed(texels: vec4u, chunk: u32) {}
 

@@ -54,7 +54,7 @@ pub struct Prepared {
 pub(super) struct Step {
     pipeline: wgpu::ComputePipeline,
     bind_group: wgpu::BindGroup,
-    workgroups: u32,
+    workgroups: [u32; 2],
     /// How many evaluations it does, to weigh progress with.
     pub evaluations: u64,
 }
@@ -86,6 +86,8 @@ const INVOCATIONS_PER_DISPATCH: usize = 1 << 21;
 /// Bytes of a tile's result, and of the raw integrals behind it.
 const TILE_BYTES: usize = 1 << 25;
 const WORKGROUP: usize = 64;
+/// Workgroups along a dimension: the least that a device allows.
+const ROWS_PER_DISPATCH: usize = 65_535;
 
 impl Layout {
     pub fn new(table: &TablePlan, precision: Precision) -> Self {
@@ -257,12 +259,11 @@ impl Baker {
             let end = (first + per_step).min(range.end);
             let job = Job { first: count(first)?, end: count(end)?, base, ..stage.job };
             let job = self.init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
-            let buffers =
-                [&job].into_iter().chain(&stage.inputs).chain(more_inputs.iter().copied()).chain([output]);
+            let buffers = [&job, output].into_iter().chain(&stage.inputs).chain(more_inputs.iter().copied());
             steps.push(Step {
                 pipeline: pipeline.clone(),
                 bind_group: self.bind(&pipeline, buffers.map(wgpu::Buffer::as_entire_binding)),
-                workgroups: count((end - first).div_ceil(WORKGROUP))?,
+                workgroups: [count((end - first).div_ceil(WORKGROUP))?, 1],
                 evaluations: ((end - first) * stage.cost) as u64,
             });
         }
@@ -279,19 +280,17 @@ impl Baker {
         output: &wgpu::Buffer,
         steps: &mut Vec<Step>,
     ) -> Result<()> {
-        const BYTES: usize = VALUE_WINDOW * 32;
-        let rows = self.init(bytemuck::cast_slice(&rows.window(units)), wgpu::BufferUsages::UNIFORM);
-        let window = |buffer, first: usize| {
-            let size = std::num::NonZeroU64::new(BYTES as u64);
-            wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: (first * 32) as u64, size })
-        };
-        for row in (0..units.len()).step_by(VALUE_WINDOW) {
-            for quad in (0..stage.per_unit).step_by(VALUE_WINDOW) {
-                let columns = VALUE_WINDOW.min(stage.per_unit - quad);
-                let invocations = columns * VALUE_WINDOW.min(units.len() - row);
+        const BYTES: u64 = VALUE_WINDOW as u64 * 32;
+        let rows = self.init(bytemuck::cast_slice(&rows.of(units)), wgpu::BufferUsages::STORAGE);
+        for quad in (0..stage.per_unit).step_by(VALUE_WINDOW) {
+            let columns = VALUE_WINDOW.min(stage.per_unit - quad);
+            let (offset, size) = (quad as u64 * 32, std::num::NonZeroU64::new(BYTES));
+            let window = wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: quads, offset, size });
+            let rows_per_step = (EVALUATIONS_PER_DISPATCH / (columns * stage.cost)).clamp(1, ROWS_PER_DISPATCH);
+            for row in (0..units.len()).step_by(rows_per_step) {
+                let rows_here = rows_per_step.min(units.len() - row);
                 let job = Job {
                     first: count(row)?,
-                    end: count(invocations)?,
                     columns: count(columns)?,
                     azimuths: count(stage.per_unit)?,
                     nodes: count(quad)?,
@@ -300,15 +299,15 @@ impl Baker {
                 let job = self.init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
                 let resources = [
                     job.as_entire_binding(),
-                    window(&rows, row),
-                    window(quads, quad),
                     output.as_entire_binding(),
+                    rows.as_entire_binding(),
+                    window.clone(),
                 ];
                 steps.push(Step {
                     pipeline: pipeline.clone(),
                     bind_group: self.bind(pipeline, resources),
-                    workgroups: count(invocations.div_ceil(WORKGROUP))?,
-                    evaluations: (invocations * stage.cost) as u64,
+                    workgroups: [count(columns.div_ceil(WORKGROUP))?, count(rows_here)?],
+                    evaluations: (columns * rows_here * stage.cost) as u64,
                 });
             }
         }
@@ -410,6 +409,6 @@ impl Step {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.bind_group, &[]);
-        pass.dispatch_workgroups(self.workgroups, 1, 1);
+        pass.dispatch_workgroups(self.workgroups[0], self.workgroups[1], 1);
     }
 }

@@ -16,10 +16,10 @@ pub enum Kernel {
     Values,
     /// The same, added to those of earlier lobes.
     AddValues,
-    /// Integrals in slopes.
+    /// Integrals in slopes, for tolerances that f32 can meet.
     Slopes,
-    /// The same where azimuths or nodes do not fit a uniform binding.
-    SlopesOfMany,
+    /// The same for finer ones.
+    FineSlopes,
     /// Integrals over (θe, δφ).
     Product,
     /// Integrals by sampling the distribution of normals.
@@ -32,6 +32,8 @@ pub enum Kernel {
     Analytic,
     /// The outer sums, into channels.
     Sum,
+    /// The same, added to those of earlier lobes.
+    AddSum,
     /// Texels of a texture.
     Pack,
     /// Nothing but stores.
@@ -40,16 +42,15 @@ pub enum Kernel {
     MultiplyAdd,
 }
 
-/// Vectors of four that fit a uniform binding of 64 KiB, which every device has.
-pub(super) fn vectors(precision: Precision) -> usize {
-    (1 << 16) / (4 * precision.bytes())
-}
+/// Room for the rules of Gauss–Legendre that tables of coarse tolerances take: all from 1 node to 44.
+pub(super) const COARSE_NODES: usize = 1024;
 
 /// Rows and quads of azimuths that one dispatch of values takes: 32 bytes each in a uniform buffer, of which
 /// every device binds 64 KiB.
 pub(super) const VALUE_WINDOW: usize = 1024;
 
-/// The WGSL of `kernel` for `model` (none: kernels that evaluate no model) and so many channels.
+/// The WGSL of `kernel` for `model` (none: kernels that evaluate no model) and so many channels; 0 are the
+/// raw results of integrals that an outer sum goes on with.
 pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize, precision: Precision) -> String {
     let files = kernel.files(channels);
     if kernel.is_plain() {
@@ -59,25 +60,32 @@ pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize, precision
     let real = precision.name();
     let mut source = format!("alias real = {real};\nalias real2 = vec2<real>;\nalias real4 = vec4<real>;\n");
     match kernel {
-        Kernel::Slopes | Kernel::SlopesOfMany => {
-            source += &format!("const VECTORS = {}u;\n", vectors(precision));
-        }
-        Kernel::Values | Kernel::AddValues => {
-            let add = kernel == Kernel::AddValues;
-            source += &format!("const ADD = {add};\nconst WINDOW = {VALUE_WINDOW}u;\n");
-        }
+        Kernel::Slopes => source += &format!("const NODES = {COARSE_NODES}u;\n"),
+        Kernel::Values | Kernel::AddValues => source += &format!("const WINDOW = {VALUE_WINDOW}u;\n"),
         _ => {}
     }
+    let add = matches!(kernel, Kernel::AddValues | Kernel::AddSum);
+    source += &format!("const CHANNELS = {channels}u;\nconst ADD = {add};\n");
     let mut add = |part: &Part| source += &format!("\n// ---- {}\n{}", part.name, part.wgsl);
     add(&part!("kernel/job"));
     if let Some(model) = model {
         add(&part!("pair"));
         model.parts.iter().for_each(&mut add);
-        if let (true, Integral::Slopes(slopes)) = (kernel.is_sampling(), model.integral) {
-            add(&slopes.sampling.part);
+        if let Integral::Slopes(slopes) = model.integral {
+            match kernel {
+                Kernel::Slopes => add(&slopes.coarse.part),
+                Kernel::FineSlopes => add(&slopes.fine.part),
+                Kernel::Ndf | Kernel::Vndf | Kernel::Random => add(&slopes.sampling.part),
+                _ => {}
+            }
         }
     }
-    files.iter().for_each(add);
+    files.iter().for_each(&mut add);
+    match (kernel, channels) {
+        (Kernel::Values | Kernel::AddValues, _) => {}
+        (_, 0) => add(&part!("kernel/write_raw")),
+        _ => add(&part!("kernel/write_channels")),
+    }
     source
 }
 
@@ -88,8 +96,10 @@ impl Kernel {
             (Self::Values | Self::AddValues, 1) => &[part!("kernel/store_1"), part!("kernel/values")],
             (Self::Values | Self::AddValues, 2) => &[part!("kernel/store_2"), part!("kernel/values")],
             (Self::Values | Self::AddValues, _) => &[part!("kernel/store_3"), part!("kernel/values")],
-            (Self::Slopes, _) => &[part!("kernel/slopes_uniform"), part!("kernel/slopes")],
-            (Self::SlopesOfMany, _) => &[part!("kernel/slopes_storage"), part!("kernel/slopes")],
+            (Self::Slopes, _) => &[part!("lobe/slopes"), part!("kernel/nodes_uniform"), part!("kernel/slopes")],
+            (Self::FineSlopes, _) => {
+                &[part!("lobe/slopes"), part!("kernel/nodes_storage"), part!("kernel/slopes")]
+            }
             (Self::Product, _) => &[part!("kernel/product")],
             (Self::Ndf, _) => &[part!("kernel/sampling"), part!("sampling/ndf"), part!("sampling/tabulated")],
             (Self::Vndf, _) => {
@@ -99,7 +109,7 @@ impl Kernel {
                 &[part!("kernel/sampling"), part!("sampling/vndf"), part!("sampling/random")]
             }
             (Self::Analytic, _) => &[part!("kernel/analytic")],
-            (Self::Sum, _) => &[part!("kernel/sum")],
+            (Self::Sum | Self::AddSum, _) => &[part!("kernel/sum")],
             (Self::Pack, _) => &[part!("kernel/pack")],
             (Self::Fill, _) => &[part!("probe/fill")],
             (Self::MultiplyAdd, _) => &[part!("probe/multiply_add")],
@@ -109,11 +119,6 @@ impl Kernel {
     /// Whether it knows no job, model or precision: its file is all of it.
     fn is_plain(self) -> bool {
         matches!(self, Self::Pack | Self::Fill | Self::MultiplyAdd)
-    }
-
-    /// Whether it draws samples.
-    fn is_sampling(self) -> bool {
-        matches!(self, Self::Ndf | Self::Vndf | Self::Random)
     }
 }
 

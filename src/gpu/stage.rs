@@ -1,18 +1,18 @@
 //! The work of one lobe, uploaded: f64 factors rounded to the kernels' precision, as they lay them out.
 
 use super::baker::{Baker, count};
-use super::compose::{Kernel, VALUE_WINDOW, vectors};
+use super::compose::{COARSE_NODES, Kernel, VALUE_WINDOW};
 use crate::error::Result;
-use crate::models::{ALPHA_MIN_INTEGRAL, Model};
+use crate::models::{ALPHA_MIN_INTEGRAL, Model, SlopeCounts, is_fine};
 use crate::pair::{Azimuth, Pair};
 use crate::plan::{Lobe, Precision};
 use crate::sampling::Sampler;
-use crate::slopes::TILE_ALPHAS;
+use crate::slopes::{Side, TILE_ALPHAS};
 use crate::work::{Inner, Work, WorkKind};
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 
-/// The stages of one lobe: values in one, or raw integrals and then their outer sum.
+/// The stages of one lobe: one that makes the channels, or raw integrals and then their outer sum.
 pub(super) struct Stages {
     pub inner: Stage,
     pub sum: Option<Stage>,
@@ -22,7 +22,7 @@ pub(super) struct Stages {
 pub(super) struct Stage {
     pub kernel: Kernel,
     pub model: Option<&'static Model>,
-    /// Channels, where the kernel is composed for them.
+    /// Channels that it makes; 0 where its results are raw.
     pub channels: usize,
     pub precision: Precision,
     pub job: Job,
@@ -52,16 +52,14 @@ impl Rows {
         Self { alphas: alphas.to_vec(), pairs: pairs.iter().map(row).collect() }
     }
 
-    /// Some of them as the kernel lays them out, in whole windows.
-    pub fn window(&self, units: &Range<usize>) -> Vec<Row> {
+    /// Some of them as the kernel lays them out.
+    pub fn of(&self, units: &Range<usize>) -> Vec<Row> {
         let row = |unit: usize| {
             let mut row = self.pairs[unit % self.pairs.len()];
             row[7] = self.alphas[unit / self.pairs.len()] as f32;
             row
         };
-        let mut rows: Vec<_> = units.clone().map(row).collect();
-        rows.resize(rows.len().next_multiple_of(VALUE_WINDOW), Row::zeroed());
-        rows
+        units.clone().map(row).collect()
     }
 }
 
@@ -73,11 +71,10 @@ pub(super) struct Job {
     pub first: u32,
     pub end: u32,
     pub base: u32,
-    pub accumulate: u32,
     pub columns: u32,
     pub azimuths: u32,
     pub nodes: u32,
-    pub pad: u32,
+    pub pad: [u32; 2],
 }
 
 impl Stages {
@@ -90,7 +87,6 @@ impl Stages {
     ) -> Result<Self> {
         let upload = Upload { baker, precision };
         let channels = lobe.weights.len();
-        let job = Job { accumulate: u32::from(accumulate), ..Job::new(lobe) };
         match &work.kind {
             WorkKind::Values { pairs, azimuths } => Ok(Self {
                 inner: Stage {
@@ -98,7 +94,7 @@ impl Stages {
                     model: Some(lobe.model),
                     channels,
                     precision: Precision::F32,
-                    job,
+                    job: Job::new(lobe, 1.0),
                     inputs: vec![upload.quads(azimuths)],
                     rows: Some(Rows::new(&work.alphas, pairs)),
                     per_unit: azimuths.len().div_ceil(4),
@@ -107,25 +103,28 @@ impl Stages {
                 },
                 sum: None,
             }),
-            WorkKind::Integrals { inner, outer } => Ok(Self {
-                inner: Stage {
-                    model: Some(lobe.model),
-                    per_unit: inner.count(),
-                    ..Stage::inner(&upload, inner, &work.alphas)?
-                },
-                sum: Some(Stage {
-                    kernel: Kernel::Sum,
+            WorkKind::Integrals { inner, outer } => {
+                let stage = Stage::inner(&upload, inner, &work.alphas)?;
+                let inner = Stage { model: Some(lobe.model), per_unit: inner.count(), ..stage };
+                // A texel that is one inner integral needs no sum.
+                if let (&[weight], false) = (&outer[..], accumulate) {
+                    let job = Job { weights: Job::new(lobe, weight).weights, ..inner.job };
+                    return Ok(Self { inner: Stage { channels, job, ..inner }, sum: None });
+                }
+                let sum = Stage {
+                    kernel: if accumulate { Kernel::AddSum } else { Kernel::Sum },
                     model: None,
-                    channels: 0,
+                    channels,
                     precision,
-                    job: Job { columns: count(channels)?, nodes: count(outer.len())?, ..job },
+                    job: Job { nodes: count(outer.len())?, ..Job::new(lobe, 1.0) },
                     inputs: vec![upload.reals(outer)],
                     rows: None,
-                    per_unit: inner.count() / outer.len(),
+                    per_unit: inner.per_unit / outer.len(),
                     units: 1,
                     cost: outer.len(),
-                }),
-            }),
+                };
+                Ok(Self { inner, sum: Some(sum) })
+            }
         }
     }
 
@@ -141,25 +140,24 @@ impl Stage {
         let (kernel, azimuths, nodes, inputs) = match inner {
             Inner::Slopes(work) => {
                 let (alphas, rows) = fours(alphas);
-                let pair = |[a, b]: [Range<usize>; 2]| [a.start, a.len(), b.start, b.len()].map(|n| n as u32);
-                let columns: Vec<_> = work.columns.iter().cloned().map(pair).collect();
-                let tiles: Vec<_> = work.tiles().map(pair).collect();
+                let side = |side: Side| {
+                    let SlopeCounts { azimuths, nodes } = side.counts;
+                    [side.first_azimuth, azimuths, side.first_node, nodes].map(|n| n as u32)
+                };
+                let tiles: Vec<_> = work.tiles.iter().map(|tile| tile.map(side)).collect();
                 let nodes: Vec<_> = work.nodes.iter().map(|node| [node.x, node.weight, 0.0, 0.0]).collect();
-                let most = vectors(upload.precision);
-                let many = work.azimuths.len().max(nodes.len()) > most;
-                let table = |vectors: &[[f64; 4]]| match many {
-                    true => upload.reals(vectors.as_flattened()),
-                    false => upload.uniforms(vectors, most),
+                let (kernel, nodes) = match is_fine(work.tolerance) {
+                    false => (Kernel::Slopes, upload.uniforms(&nodes, COARSE_NODES)),
+                    true => (Kernel::FineSlopes, upload.reals(nodes.as_flattened())),
                 };
                 let inputs = vec![
                     upload.reals(&alphas),
                     upload.reals(&work.mus),
-                    upload.input(&columns),
                     upload.input(&tiles),
-                    table(&work.azimuths),
-                    table(&nodes),
+                    upload.reals(work.azimuths.as_flattened()),
+                    nodes,
                 ];
-                (if many { Kernel::SlopesOfMany } else { Kernel::Slopes }, 0, rows, inputs)
+                (kernel, 0, rows, inputs)
             }
             Inner::Product { pairs, azimuths } => {
                 let inputs = vec![upload.reals(alphas), upload.pairs(pairs), upload.azimuths(azimuths)];
@@ -214,9 +212,11 @@ fn fours(alphas: &[f64]) -> (Vec<f64>, usize) {
 }
 
 impl Job {
-    fn new(lobe: &Lobe) -> Self {
+    /// The channels' weights, times `scale`.
+    fn new(lobe: &Lobe, scale: f64) -> Self {
         let mut weights = [[0.0; 4]; 3];
-        for (row, &[a, b]) in weights.iter_mut().zip(&lobe.weights) {
+        for (row, &weight) in weights.iter_mut().zip(&lobe.weights) {
+            let [a, b] = weight.map(|x| scale * x);
             // What f32 drops is kept for kernels in f64.
             let rest = |x: f64| (x - f64::from(x as f32)) as f32;
             *row = [a as f32, b as f32, rest(a), rest(b)];

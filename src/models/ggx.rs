@@ -3,10 +3,9 @@
 
 use super::fresnel::schlick::{self, fresnel};
 use super::masking::smith::{self, masking, visibility};
-use super::ndf::ggx::{self, Map, map, map_end, ndf};
-use super::ndf::ggx_nodes;
-use super::ndf::ggx_samples;
-use super::{Component, Integral, Model, Slopes, part};
+use super::ndf::ggx::{self, Map, ndf};
+use super::ndf::{ggx_coarse, ggx_fine, ggx_nodes, ggx_samples};
+use super::{Component, Integral, Model, SlopeMap, Slopes, part};
 use crate::pair::Half;
 use crate::reference;
 
@@ -19,10 +18,17 @@ pub(crate) static MODEL: Model = Model {
     rho_bound: 1.0,
     parts: &[schlick::PART, ggx::PART, smith::PART, part!("lobe/microfacet")],
     integral: Integral::Slopes(&Slopes {
-        end: map_end,
-        integrand: slope_integrand,
-        azimuths: ggx_nodes::azimuths,
-        nodes: ggx_nodes::nodes,
+        coarse: SlopeMap {
+            part: ggx_coarse::PART,
+            end: ggx_coarse::map_end,
+            integrand: |r, azimuth, mu_e, alpha| integrand(ggx_coarse::map(r, alpha), azimuth, mu_e, alpha),
+        },
+        fine: SlopeMap {
+            part: ggx_fine::PART,
+            end: ggx_fine::map_end,
+            integrand: |r, azimuth, mu_e, alpha| integrand(ggx_fine::map(r, alpha), azimuth, mu_e, alpha),
+        },
+        counts: ggx_nodes::counts,
         mirror_limit: |mu_e| fresnel(mu_e, 1.0 - mu_e),
         sampling: ggx_samples::SAMPLING,
     }),
@@ -34,12 +40,12 @@ pub(crate) static MODEL: Model = Model {
     reference: Some(reference::GGX),
 };
 
-fn slope_integrand(r: f64, [c, t_max, t_max_inverse]: [f64; 3], mu_e: f64, alpha: f64) -> [f64; 2] {
-    let Map { p, m, weight, divisor } = map(r, alpha);
+fn integrand(map: Map, [c, t_max, t_max_inverse]: [f64; 3], mu_e: f64, alpha: f64) -> [f64; 2] {
+    let Map { p, m, weight } = map;
     let projected = m + c * p;
-    let sec2 = m * m + p * p;
-    let mu_i = mu_e * ((t_max * m - p) * (p + t_max_inverse * m)).max(0.0);
-    let all = 2.0 * mu_e * mu_i * projected * weight / (masking(mu_i, sec2, mu_e, alpha) * m * divisor);
-    let c = (mu_e * projected / sec2.sqrt()).min(1.0);
+    let y = m * m + p * p;
+    let x = ((t_max * m - p) * (p + t_max_inverse * m)).max(0.0);
+    let all = 2.0 * mu_e * x * projected * weight / masking(x, y, mu_e, alpha);
+    let c = (mu_e * projected / y.sqrt()).min(1.0);
     fresnel(c, 1.0 - c).map(|f| f * all)
 }

@@ -73,20 +73,36 @@ pub enum Integral {
     Delta(fn(mu: f64, alpha: f64) -> [f64; 2]),
 }
 
-/// The f64 twin of a lobe's integrand in slopes.
+/// How a lobe is integrated in slopes.
 pub struct Slopes {
-    /// The end of the map at a horizon tan θm = t_max.
-    pub(crate) end: fn(t_max: f64, alpha: f64) -> f64,
-    /// The integrand at r, for an azimuth (c, t_max, 1/t_max).
-    pub(crate) integrand: fn(r: f64, azimuth: [f64; 3], mu_e: f64, alpha: f64) -> [f64; 2],
-    /// How many azimuths a texel takes to meet a tolerance, with cos φ > 0 and < 0.
-    pub(crate) azimuths: fn(mu: f64, alpha: f64, tolerance: f64) -> [usize; 2],
-    /// How many nodes in r each of them takes.
-    pub(crate) nodes: fn(mu: f64, alpha: f64, tolerance: f64) -> [usize; 2],
+    /// The map of tolerances that f32 can meet.
+    pub(crate) coarse: SlopeMap,
+    /// That of finer ones.
+    pub(crate) fine: SlopeMap,
+    /// What a texel takes to meet a tolerance, where cos φ > 0 and where it is < 0.
+    pub(crate) counts: fn(mu: f64, alpha: f64, tolerance: f64) -> [SlopeCounts; 2],
     /// What α → 0 tends to.
     pub(crate) mirror_limit: fn(mu_e: f64) -> [f64; 2],
     /// What peers do in place of all that.
     pub(crate) sampling: Sampling,
+}
+
+/// How much work one side of a texel is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct SlopeCounts {
+    pub azimuths: usize,
+    /// Nodes in r, for each azimuth.
+    pub nodes: usize,
+}
+
+/// A map of slopes, and the f64 twin of the integrand in it.
+pub(crate) struct SlopeMap {
+    /// Its shader.
+    pub part: Part,
+    /// The end of the map at a horizon tan θm = t_max.
+    pub end: fn(t_max: f64, alpha: f64) -> f64,
+    /// The integrand at r, for an azimuth (c, t_max, 1/t_max).
+    pub integrand: fn(r: f64, azimuth: [f64; 3], mu_e: f64, alpha: f64) -> [f64; 2],
 }
 
 /// Importance sampling of a microfacet lobe: (A, B) of f μi / p for a draw of two numbers, the second
@@ -121,12 +137,24 @@ pub(crate) fn decade(tolerance: f64) -> usize {
     (-tolerance.log10() - 1e-9).ceil().clamp(1.0, 10.0) as usize - 1
 }
 
+/// Whether a tolerance is beyond f32: from there on maps matter that converge longer.
+pub(crate) fn is_fine(tolerance: f64) -> bool {
+    tolerance < 0.9e-6
+}
+
 /// The model of this name.
 pub fn find(name: &str) -> Result<&'static Model> {
     MODELS.into_iter().find(|m| m.name == name).ok_or_else(|| {
         let names: Vec<_> = MODELS.iter().map(|m| m.name).collect();
         Error::input(format!("no model \"{name}\"; there are {}", names.join(", ")))
     })
+}
+
+impl Slopes {
+    /// The map for a tolerance.
+    pub(crate) fn map(&self, tolerance: f64) -> &SlopeMap {
+        if is_fine(tolerance) { &self.fine } else { &self.coarse }
+    }
 }
 
 impl Component {

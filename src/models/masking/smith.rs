@@ -15,8 +15,8 @@ pub(crate) fn root(mu: f64, alpha: f64) -> f64 {
     (alpha * alpha + (1.0 - alpha * alpha) * mu * mu).sqrt()
 }
 
-/// G2 = x / masking(x, y) · 2 μe, for μi = x/y.
+/// G2 = 2 μe x / masking(x, y), for μi = μe x/y.
 pub(crate) fn masking(x: f64, y: f64, mu_e: f64, alpha: f64) -> f64 {
-    let a2 = alpha * alpha;
-    x * root(mu_e, alpha) + mu_e * (a2 * y * y + (1.0 - a2) * x * x).sqrt()
+    let (a2, b2) = (alpha * alpha, (1.0 - alpha * alpha) * mu_e * mu_e);
+    x * root(mu_e, alpha) + (a2 * y * y + b2 * x * x).sqrt()
 }

@@ -10,7 +10,7 @@ const PART: Part = part!("ndf/ggx_samples");
 /// f μi / p for a draw (t, cos φ) of D cos θm.
 fn by_ndf([t, cos_phi]: [f64; 2], mu: f64, alpha: f64) -> [f64; 2] {
     let tan = alpha * t;
-    estimate([tan * cos_phi, tan * tan, 1.0], mu, alpha, |q| 2.0 * q)
+    estimate([tan * cos_phi, tan * tan, 1.0], mu, alpha, |q| 2.0 * mu * q)
 }
 
 /// f μi / p for a draw (u, cos φ) of the normals that ωe sees.
@@ -26,11 +26,11 @@ fn by_vndf([u, cos_phi]: [f64; 2], mu: f64, alpha: f64) -> [f64; 2] {
 }
 
 fn estimate([x, t2, m]: [f64; 3], mu: f64, alpha: f64, weight: impl Fn(f64) -> f64) -> [f64; 2] {
-    let q = sine(mu) * x + mu * m;
+    let q = sine(mu) / mu * x + m;
     let y = m * m + t2;
-    let z = (2.0 * q * m - mu * y).max(0.0);
+    let z = (2.0 * q * m - y).max(0.0);
     let all = z * weight(q) / masking(z, y, mu, alpha);
-    let c = (q / y.sqrt()).min(1.0);
+    let c = (mu * q / y.sqrt()).min(1.0);
     if z == 0.0 { [0.0; 2] } else { fresnel(c, 1.0 - c).map(|f| f * all) }
 }
 

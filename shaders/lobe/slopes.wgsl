@@ -1,0 +1,30 @@
+// ρ = ∫ f cos θi dωi over slopes of ωm about ωe, with φ the azimuth of ωm from that of ωe,
+// t = tan θm, c = tan θe cos φ:
+//     ρ = 1/2π ∫dφ ∫ F · G2 · (ωe·ωm)/(μe cos θm) · w dv,   (ωe·ωm)/(μe cos θm) = 1 + c t
+// up to the horizon of ωi, t_max = c + √(c² + 1), where
+//     cos θi = cos²θm μe (t_max − t)(t + 1/t_max)
+// without cancellation. Four α share one azimuth; with t = p/m nothing is divided but once, and the
+// factors that no node changes are left to the end.
+
+/// One azimuth of ωm: (c, t_max, 1/t_max, weight).
+alias SlopeAzimuth = vec4<real>;
+
+/// The integrand at r, times w dv/dr: without Fresnel, and its part that F90 weighs. Both over
+/// 2 μe NDF_MAP_WEIGHT.
+struct Slope {
+    all: real4,
+    grazing: real4,
+}
+
+fn slope_integrand(r: real4, azimuth: SlopeAzimuth, e: Masked, tan_scale: real4) -> Slope {
+    let map = ndf_map(r, tan_scale);
+    let projected = map.m + azimuth.x * map.p; // ωe·ωm = μe projected/√y
+    let y = map.m * map.m + map.p * map.p;
+    let x = max((azimuth.y * map.m - map.p) * (map.p + azimuth.z * map.m), real4()); // cos θi = μe x/y
+    let root = sqrt(y);
+    let below = masking(x, y, e) * map.divisor;
+    let inverse = 1.0 / (root * below);
+    let all = x * projected * map.weight * (root * inverse);
+    let c = min(e.mu * projected * (below * inverse), real4(1.0));
+    return Slope(all, all * fresnel_grazing(1.0 - c));
+}
