@@ -10,7 +10,7 @@ pub(crate) struct SlopeWork {
     pub slopes: &'static Slopes,
     pub tolerance: f64,
     pub mus: Vec<f64>,
-    /// (c, t_max, 1/t_max, weight): for each column of a tile as many as the tile takes, one after the other.
+    /// (μe c, t_max, 1/t_max, weight): for each column of a tile as many as the tile takes, one after the other.
     pub azimuths: Vec<[f64; 4]>,
     /// Gauss–Legendre rules, one after the other.
     pub nodes: Vec<Node>,
@@ -42,13 +42,15 @@ impl SlopeWork {
             for (group, mus) in mus.chunks(TILE_COLUMNS).enumerate() {
                 let counts = most(mus, alphas, |mu, alpha| (slopes.counts)(mu, alpha, tolerance));
                 tiles.push([(1.0, counts[0]), (-1.0, counts[1])].map(|(sign, counts)| Side {
-                    first_azimuth: *azimuths_of
-                        .entry((group, sign > 0.0, counts.azimuths))
-                        .or_insert_with(|| {
+                    first_azimuth: *azimuths_of.entry((group, sign > 0.0, counts.azimuths)).or_insert_with(
+                        || {
                             let first = azimuths.len();
-                            azimuths.extend(mus.iter().flat_map(|&mu| side(mu, sign, counts.azimuths, tolerance)));
+                            azimuths.extend(
+                                mus.iter().flat_map(|&mu| side(mu, sign, counts.azimuths, tolerance)),
+                            );
                             first
-                        }),
+                        },
+                    ),
                     first_node: *nodes_of.entry(counts.nodes).or_insert_with(|| {
                         let first = nodes.len();
                         nodes.extend(gauss_legendre(counts.nodes));
@@ -93,11 +95,7 @@ fn cost(tile: [Side; 2]) -> usize {
 }
 
 /// The largest counts over all of (μ, α).
-fn most(
-    mus: &[f64],
-    alphas: &[f64],
-    counts: impl Fn(f64, f64) -> [SlopeCounts; 2],
-) -> [SlopeCounts; 2] {
+fn most(mus: &[f64], alphas: &[f64], counts: impl Fn(f64, f64) -> [SlopeCounts; 2]) -> [SlopeCounts; 2] {
     let all = mus.iter().flat_map(|&mu| alphas.iter().map(move |&alpha| (mu, alpha)));
     let one = SlopeCounts { azimuths: 1, nodes: 1 };
     all.map(|(mu, alpha)| counts(mu, alpha)).fold([one; 2], |a, b| {
@@ -122,6 +120,6 @@ pub(crate) fn side(mu: f64, sign: f64, n: usize, tolerance: f64) -> impl Iterato
         let root = c.hypot(1.0);
         let t_max = if c > 0.0 { c + root } else { 1.0 / (root - c) };
         // dφ/π: both halves of the azimuth, over 2π
-        [c, t_max, 1.0 / t_max, node.weight * u_max * d * u.cosh() / PI]
+        [mu * c, t_max, 1.0 / t_max, node.weight * u_max * d * u.cosh() / PI]
     })
 }

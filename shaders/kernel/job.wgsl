@@ -9,6 +9,7 @@ struct Job {
     columns: u32,             // counts, by kernel
     azimuths: u32,
     nodes: u32,
+    tiles: u32,
 }
 
 const INV_PI: real = 0.3183098861837907;

@@ -6,6 +6,7 @@
 @group(0) @binding(3) var<storage, read> mus: array<real>;
 @group(0) @binding(4) var<storage, read> tiles: array<Tile>;
 @group(0) @binding(5) var<storage, read> azimuths: array<SlopeAzimuth>;
+@group(0) @binding(7) var<storage, read> order: array<u32>;    // of the rows of fours, dear and cheap mixed
 
 /// The two halves of the azimuths, which differ in how many nodes they take.
 struct Tile {
@@ -27,12 +28,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     // What is beyond the end does the last one's work again: an early return would make software
     // drivers mask every instruction.
     let invocation = min(job.first + id.x, job.end - 1u);
-    let column = invocation % job.columns;
-    let row = invocation / job.columns;
+    let k = invocation / job.columns;
+    let column = invocation - k * job.columns;
+    let row = order[k];
     let alpha = alphas[row];
     let mu = mus[column];
     let e = masked(mu, alpha);
-    let tile = tiles[row * ((job.columns + TILE_COLUMNS - 1u) / TILE_COLUMNS) + column / TILE_COLUMNS];
+    let tile = tiles[row * job.tiles + column / TILE_COLUMNS];
     let near = integral(tile.near, column % TILE_COLUMNS, e, alpha);
     let far = integral(tile.far, column % TILE_COLUMNS, e, alpha);
     let grazing = near.grazing + far.grazing;
@@ -61,13 +63,13 @@ fn integral(side: Side, column: u32, e: Masked, alpha: real4) -> Slope {
         var inner = Slope();
         for (var j = side.first_node; j < side.first_node + side.nodes; j++) {
             let node = nodes[j];
-            let value = slope_integrand(end * node.x, azimuth, e, tan_scale);
-            inner.all += node.y * value.all;
-            inner.grazing += node.y * value.grazing;
+            let value = slope_term(end * node.x, node.y, azimuth, e, tan_scale);
+            inner.all += value.all;
+            inner.grazing += value.grazing;
         }
         sum.all += azimuth.w * end * inner.all;
         sum.grazing += azimuth.w * end * inner.grazing;
     }
-    let scale = 2.0 * e.mu * NDF_MAP_WEIGHT;
+    let scale = 2.0 * NDF_MAP_WEIGHT;
     return Slope(scale * sum.all, scale * sum.grazing);
 }

@@ -1,7 +1,7 @@
 // Values of a BRDF over (roughness, θi, θe, δφ): four azimuths an invocation, no trigonometry, wide
-// stores. Rows are padded to whole quads. A dispatch takes a window of rows and quads that fits uniform
-// buffers: those are half the price of storage buffers on the CPU. A workgroup is 8 quads by 8 rows, so that
-// a software driver's eight lanes share a row and read it once.
+// stores. Rows are padded to whole quads. A workgroup stays in one row, which software drivers then read once
+// for all their lanes; the quads of a dispatch are a window that fits a uniform buffer, which they read at
+// half the price of storage.
 
 struct Quad {
     sin2: real4, // sin²(δ/2)
@@ -12,7 +12,7 @@ struct Quad {
 @group(0) @binding(2) var<storage, read> rows: array<Pair>;
 @group(0) @binding(3) var<uniform> quads: array<Quad, WINDOW>;
 
-@compute @workgroup_size(64, 1)
+@compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if ADD && id.x >= job.columns {
         return;

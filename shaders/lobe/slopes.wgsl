@@ -6,25 +6,25 @@
 // without cancellation. Four α share one azimuth; with t = p/m nothing is divided but once, and the
 // factors that no node changes are left to the end.
 
-/// One azimuth of ωm: (c, t_max, 1/t_max, weight).
+/// One azimuth of ωm: (μe c, t_max, 1/t_max, weight).
 alias SlopeAzimuth = vec4<real>;
 
-/// The integrand at r, times w dv/dr: without Fresnel, and its part that F90 weighs. Both over
-/// 2 μe NDF_MAP_WEIGHT.
+/// The integrand at r, times w dv/dr and a node's weight: without Fresnel, and its part that F90 weighs. Both
+/// over 2 NDF_MAP_WEIGHT.
 struct Slope {
     all: real4,
     grazing: real4,
 }
 
-fn slope_integrand(r: real4, azimuth: SlopeAzimuth, e: Masked, tan_scale: real4) -> Slope {
+fn slope_term(r: real4, weight: real, azimuth: SlopeAzimuth, e: Masked, tan_scale: real4) -> Slope {
     let map = ndf_map(r, tan_scale);
-    let projected = map.m + azimuth.x * map.p; // ωe·ωm = μe projected/√y
-    let y = map.m * map.m + map.p * map.p;
-    let x = max((azimuth.y * map.m - map.p) * (map.p + azimuth.z * map.m), real4()); // cos θi = μe x/y
+    let projected = fma(real4(azimuth.x), map.p, e.mu * map.m); // ωe·ωm √y
+    let y = fma(map.m, map.m, map.p * map.p);
+    let x = fma(real4(azimuth.y), map.m, -map.p) * fma(real4(azimuth.z), map.m, map.p); // cos θi = μe x/y
     let root = sqrt(y);
     let below = masking(x, y, e) * map.divisor;
     let inverse = 1.0 / (root * below);
-    let all = x * projected * map.weight * (root * inverse);
-    let c = min(e.mu * projected * (below * inverse), real4(1.0));
+    let all = x * projected * (map.weight * weight) * (root * inverse);
+    let c = min(projected * (below * inverse), real4(1.0));
     return Slope(all, all * fresnel_grazing(1.0 - c));
 }

@@ -26,5 +26,5 @@ fn masked(mu: real, alpha: real4) -> Masked {
 
 /// G2 = 2 μe x / masking(x, y), for μi = μe x/y: no division until the end.
 fn masking(x: real4, y: real4, e: Masked) -> real4 {
-    return x * e.root + sqrt(e.a2 * (y * y) + e.b2 * (x * x));
+    return fma(x, e.root, sqrt(fma(e.a2, y * y, e.b2 * (x * x))));
 }

@@ -25,8 +25,8 @@ struct Map {
 fn ndf_map(r: real4, tan_scale: real4) -> Map {
     let r2 = r * r;
     let b = 1.0 - r2;
-    let ra = r + r * r2;
-    let s = 1.0 + r2 * (6.0 + r2);
+    let ra = fma(r, r2, r);
+    let s = fma(r2, r2 + 6.0, real4(1.0));
     return Map(tan_scale * ra, b * b, ra * b, s * s * s);
 }
 const NDF_MAP_TAN: real = 4.0;

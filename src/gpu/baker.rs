@@ -225,12 +225,17 @@ impl Baker {
         units: Range<usize>,
     ) -> Result<Vec<Step>> {
         let mut steps = Vec::new();
-        for Stages { inner, sum } in stages {
+        for stages in stages {
+            let Stages { inner, sum } = stages;
+            let order = stages.order(&units);
+            let order =
+                order.map(|order| self.init(bytemuck::cast_slice(&order), wgpu::BufferUsages::STORAGE));
+            let order: Vec<_> = order.iter().collect();
             match sum {
-                None => self.steps(inner, &[], &units, buffer, &mut steps)?,
+                None => self.steps(inner, &order, &units, buffer, &mut steps)?,
                 Some(sum) => {
                     let raw = self.output(units.len() * inner.per_unit * 2 * inner.precision.bytes());
-                    self.steps(inner, &[], &units, &raw, &mut steps)?;
+                    self.steps(inner, &order, &units, &raw, &mut steps)?;
                     self.steps(sum, &[&raw], &units, buffer, &mut steps)?;
                 }
             }
@@ -286,7 +291,8 @@ impl Baker {
             let columns = VALUE_WINDOW.min(stage.per_unit - quad);
             let (offset, size) = (quad as u64 * 32, std::num::NonZeroU64::new(BYTES));
             let window = wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: quads, offset, size });
-            let rows_per_step = (EVALUATIONS_PER_DISPATCH / (columns * stage.cost)).clamp(1, ROWS_PER_DISPATCH);
+            let rows_per_step =
+                (EVALUATIONS_PER_DISPATCH / (columns * stage.cost)).clamp(1, ROWS_PER_DISPATCH);
             for row in (0..units.len()).step_by(rows_per_step) {
                 let rows_here = rows_per_step.min(units.len() - row);
                 let job = Job {

@@ -96,7 +96,9 @@ impl Kernel {
             (Self::Values | Self::AddValues, 1) => &[part!("kernel/store_1"), part!("kernel/values")],
             (Self::Values | Self::AddValues, 2) => &[part!("kernel/store_2"), part!("kernel/values")],
             (Self::Values | Self::AddValues, _) => &[part!("kernel/store_3"), part!("kernel/values")],
-            (Self::Slopes, _) => &[part!("lobe/slopes"), part!("kernel/nodes_uniform"), part!("kernel/slopes")],
+            (Self::Slopes, _) => {
+                &[part!("lobe/slopes"), part!("kernel/nodes_uniform"), part!("kernel/slopes")]
+            }
             (Self::FineSlopes, _) => {
                 &[part!("lobe/slopes"), part!("kernel/nodes_storage"), part!("kernel/slopes")]
             }

@@ -7,7 +7,7 @@ use crate::models::{ALPHA_MIN_INTEGRAL, Model, SlopeCounts, is_fine};
 use crate::pair::{Azimuth, Pair};
 use crate::plan::{Lobe, Precision};
 use crate::sampling::Sampler;
-use crate::slopes::{Side, TILE_ALPHAS};
+use crate::slopes::{Side, TILE_ALPHAS, TILE_COLUMNS};
 use crate::work::{Inner, Work, WorkKind};
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
@@ -74,7 +74,8 @@ pub(super) struct Job {
     pub columns: u32,
     pub azimuths: u32,
     pub nodes: u32,
-    pub pad: [u32; 2],
+    pub tiles: u32,
+    pub pad: u32,
 }
 
 impl Stages {
@@ -126,6 +127,16 @@ impl Stages {
                 Ok(Self { inner, sum: Some(sum) })
             }
         }
+    }
+
+    /// The order in which the inner stage takes its rows of four α, if it has one: of the tile's, and of those
+    /// before it, which it does not take.
+    pub fn order(&self, units: &Range<usize>) -> Option<Vec<u32>> {
+        matches!(self.inner.kernel, Kernel::Slopes | Kernel::FineSlopes).then(|| {
+            let (first, end) = (units.start / TILE_ALPHAS, units.end.div_ceil(TILE_ALPHAS));
+            let rows = end - first;
+            (0..first).chain(mixed(rows).map(|row| first + row)).map(|row| row as u32).collect()
+        })
     }
 
     /// Bytes between the stages for each unit.
@@ -184,6 +195,7 @@ impl Stage {
             columns: count(inner.count())?,
             azimuths: count(azimuths)?,
             nodes: count(nodes)?,
+            tiles: count(inner.count().div_ceil(TILE_COLUMNS))?,
             ..Job::zeroed()
         };
         let units = if matches!(inner, Inner::Slopes(_) | Inner::Samples(_)) { TILE_ALPHAS } else { 1 };
@@ -209,6 +221,19 @@ fn fours(alphas: &[f64]) -> (Vec<f64>, usize) {
         alphas.iter().map(|&alpha| if alpha < ALPHA_MIN_INTEGRAL { 0.0 } else { alpha }).collect();
     padded.resize(alphas.len().next_multiple_of(TILE_ALPHAS), 1.0);
     (padded, alphas.len())
+}
+
+/// 0 to n − 1 such that each run of them is spread over all: software drivers give each core a contiguous
+/// share of a dispatch, and the cost of a row depends on α.
+fn mixed(n: usize) -> impl Iterator<Item = usize> {
+    // Steps of the golden section, and the next that has no divisor in common with n.
+    let golden = (n as f64 * 0.618_034) as usize;
+    let stride = (golden.max(1)..).find(|&k| gcd(k, n) == 1).unwrap_or(1);
+    (0..n).map(move |k| k * stride % n)
+}
+
+fn gcd(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { gcd(b, a % b) }
 }
 
 impl Job {

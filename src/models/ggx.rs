@@ -40,12 +40,12 @@ pub(crate) static MODEL: Model = Model {
     reference: Some(reference::GGX),
 };
 
-fn integrand(map: Map, [c, t_max, t_max_inverse]: [f64; 3], mu_e: f64, alpha: f64) -> [f64; 2] {
+fn integrand(map: Map, [mu_c, t_max, t_max_inverse]: [f64; 3], mu_e: f64, alpha: f64) -> [f64; 2] {
     let Map { p, m, weight } = map;
-    let projected = m + c * p;
+    let projected = mu_e * m + mu_c * p; // ωe·ωm √y
     let y = m * m + p * p;
-    let x = ((t_max * m - p) * (p + t_max_inverse * m)).max(0.0);
-    let all = 2.0 * mu_e * x * projected * weight / masking(x, y, mu_e, alpha);
-    let c = (mu_e * projected / y.sqrt()).min(1.0);
+    let x = (t_max * m - p) * (p + t_max_inverse * m); // cos θi = μe x/y
+    let all = 2.0 * x * projected * weight / masking(x, y, mu_e, alpha);
+    let c = (projected / y.sqrt()).min(1.0);
     fresnel(c, 1.0 - c).map(|f| f * all)
 }

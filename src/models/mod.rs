@@ -101,7 +101,7 @@ pub(crate) struct SlopeMap {
     pub part: Part,
     /// The end of the map at a horizon tan θm = t_max.
     pub end: fn(t_max: f64, alpha: f64) -> f64,
-    /// The integrand at r, for an azimuth (c, t_max, 1/t_max).
+    /// The integrand at r, for an azimuth (μe c, t_max, 1/t_max).
     pub integrand: fn(r: f64, azimuth: [f64; 3], mu_e: f64, alpha: f64) -> [f64; 2],
 }
 
