@@ -16,6 +16,10 @@ pub enum Kernel {
     Values,
     /// The same, added to those of earlier lobes.
     AddValues,
+    /// Values at a list of pairs of directions.
+    Points,
+    /// The same, added to those of earlier lobes.
+    AddPoints,
     /// Integrals in slopes.
     Slopes,
     /// The same where azimuths or nodes do not fit a uniform binding.
@@ -66,6 +70,10 @@ pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize, precision
             let add = kernel == Kernel::AddValues;
             source += &format!("const ADD = {add};\nconst WINDOW = {VALUE_WINDOW}u;\n");
         }
+        Kernel::Points | Kernel::AddPoints => {
+            let add = kernel == Kernel::AddPoints;
+            source += &format!("const ADD = {add};\nconst CHANNELS = {channels}u;\n");
+        }
         _ => {}
     }
     let mut add = |part: &Part| source += &format!("\n// ---- {}\n{}", part.name, part.wgsl);
@@ -88,6 +96,7 @@ impl Kernel {
             (Self::Values | Self::AddValues, 1) => &[part!("kernel/store_1"), part!("kernel/values")],
             (Self::Values | Self::AddValues, 2) => &[part!("kernel/store_2"), part!("kernel/values")],
             (Self::Values | Self::AddValues, _) => &[part!("kernel/store_3"), part!("kernel/values")],
+            (Self::Points | Self::AddPoints, _) => &[part!("kernel/points")],
             (Self::Slopes, _) => &[part!("kernel/slopes_uniform"), part!("kernel/slopes")],
             (Self::SlopesOfMany, _) => &[part!("kernel/slopes_storage"), part!("kernel/slopes")],
             (Self::Product, _) => &[part!("kernel/product")],

@@ -77,7 +77,7 @@ pub(super) struct Job {
     pub columns: u32,
     pub azimuths: u32,
     pub nodes: u32,
-    pub pad: u32,
+    pub alpha: f32,
 }
 
 impl Stages {
@@ -214,7 +214,7 @@ fn fours(alphas: &[f64]) -> (Vec<f64>, usize) {
 }
 
 impl Job {
-    fn new(lobe: &Lobe) -> Self {
+    pub fn new(lobe: &Lobe) -> Self {
         let mut weights = [[0.0; 4]; 3];
         for (row, &[a, b]) in weights.iter_mut().zip(&lobe.weights) {
             // What f32 drops is kept for kernels in f64.

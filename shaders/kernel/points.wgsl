@@ -1,0 +1,33 @@
+// Values of a BRDF at a list of pairs of directions, all of one α: one invocation a point.
+
+struct Point {
+    hz2: real,  // the factors of a Pair
+    dt2: real,
+    ss: real,
+    sd: real,
+    mu_i: real,
+    mu_e: real,
+    sin2: real, // and of an Azimuth
+    cos2: real,
+}
+
+@group(0) @binding(1) var<storage, read> points: array<Point>;
+@group(0) @binding(2) var<storage, read_write> values: array<f32>;
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if id.x >= job.end {
+        return;
+    }
+    let p = points[id.x];
+    let pair = Pair(p.hz2, p.dt2, p.ss, p.sd, p.mu_i, p.mu_e, 0.0, 0.0);
+    let ab = lobe(pair, Azimuth(p.sin2, p.cos2, 0.0, 0.0), job.alpha);
+    let at = (job.base + id.x) * CHANNELS;
+    for (var c = 0u; c < CHANNELS; c++) {
+        if ADD {
+            values[at + c] += channel(c, ab);
+        } else {
+            values[at + c] = channel(c, ab);
+        }
+    }
+}
