@@ -62,7 +62,7 @@ pub struct Args {
 const AFTER_HELP: &str = "\
 Examples:
   gonio eval --model ggx --set roughness=0.3 --theta-i 45deg --theta-e 45deg
-  gonio eval --model ggx --set alpha=0.1 --set f0=[1.0,0.78,0.34] --theta-i 0.5 --theta-e 0.5 --phi-e 3.0
+  gonio eval --model ggx --set alpha=0.1 --set f0=[1,0.78,0.34] --theta-i 0.5 --theta-e 0.5 --phi-e 3
   gonio eval recipe.toml --material gold --theta-i 30deg --theta-e 60deg
   gonio eval recipe.toml --material gold --pairs pairs.npy --out values.npy
 
@@ -72,7 +72,7 @@ A list in CSV; its first line and those that begin with # may be left out:
   0.7,0,0.7,3.141592653589793
   0.7,0,0.700001,3.141592653589793
 
-Exit codes: 0 success, 1 a value is not finite or negative, 2 bad input, 3 no device, 130 interrupted";
+Exit codes: 0 success, 1 values not finite or negative, 2 bad input, 3 no device, 130 interrupted";
 
 fn angle(text: &str) -> Result<f64, String> {
     let (number, scale) = match text.strip_suffix("deg") {

@@ -3,7 +3,6 @@
 
 use super::npy;
 use crate::error::{Error, Result};
-use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -72,21 +71,18 @@ impl List {
     /// When they cannot be written.
     pub fn write(&mut self, values: &[f32]) -> Result<()> {
         self.values += values.len() as u64;
-        let bytes = match self.format {
-            ListFormat::Npy => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
-            ListFormat::Csv => {
-                let mut text = String::with_capacity(values.len() * 16);
-                for row in values.chunks_exact(self.channels) {
-                    for (k, value) in row.iter().enumerate() {
-                        let comma = if k == 0 { "" } else { "," };
-                        // Nine digits tell every f32.
-                        let _ = write!(text, "{comma}{value:.8e}"); // a String takes all
-                    }
-                    text.push('\n');
+        let mut bytes = Vec::with_capacity(values.len() * 16);
+        for row in values.chunks_exact(self.channels) {
+            match self.format {
+                ListFormat::Npy => row.iter().for_each(|value| bytes.extend_from_slice(&value.to_le_bytes())),
+                ListFormat::Csv => {
+                    // Nine digits tell every f32.
+                    let words: Vec<_> = row.iter().map(|value| format!("{value:.8e}")).collect();
+                    bytes.extend_from_slice(words.join(",").as_bytes());
+                    bytes.push(b'\n');
                 }
-                text.into_bytes()
             }
-        };
+        }
         self.file.write_all(&bytes).map_err(Error::io("write", &self.path))
     }
 

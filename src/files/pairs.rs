@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::points::Angles;
 use std::f64::consts::FRAC_PI_2;
 use std::fs::File;
-use std::io::{self, BufReader, ErrorKind, Read};
+use std::io::{self, BufRead, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 /// The columns, by the names that a CSV header gives them.
@@ -23,7 +23,7 @@ pub(crate) struct Pairs {
 
 enum Source {
     Npy(BufReader<File>, Number),
-    Csv(Box<csv::Reader<File>>),
+    Csv(Lines),
 }
 
 /// How an NPY file writes a number.
@@ -47,11 +47,10 @@ impl Pairs {
                 let (number, rows) = npy_header(&mut file).map_err(|why| why.explain(path))?;
                 (Some(rows), Source::Npy(file, number))
             }
-            ListFormat::Csv => {
-                let mut reader = csv::ReaderBuilder::new();
-                reader.has_headers(false).flexible(true).comment(Some(b'#')).trim(csv::Trim::All);
-                (None, Source::Csv(Box::new(reader.from_reader(file))))
-            }
+            ListFormat::Csv => (
+                None,
+                Source::Csv(Lines { file: BufReader::new(file), line: 0, bytes: Vec::new(), began: false }),
+            ),
         };
         Ok(Self { path: path.to_owned(), count, read: 0, source })
     }
@@ -76,23 +75,15 @@ impl Pairs {
                     _ => Error::io("read", &self.path)(error),
                 })?;
                 for (row, bytes) in (self.read..).zip(bytes.chunks_exact(4 * number.bytes)) {
-                    let mut numbers = bytes.chunks_exact(number.bytes).map(|bytes| number.read(bytes));
-                    let pair = angles_of([(); 4].map(|()| numbers.next().unwrap_or(f64::NAN)));
+                    let pair = angles_of(number.read(bytes));
                     pair.check().map_err(|e| e.at(format!("{}: row {row}, from 0", self.path.display())))?;
                     angles.push(pair);
                 }
             }
-            Source::Csv(reader) => {
-                let mut record = csv::StringRecord::new();
-                while angles.len() < most && read_record(reader, &mut record, &self.path)? {
-                    let line = record.position().map_or(0, csv::Position::line);
-                    let place = format!("{}: line {line}", self.path.display());
-                    let first = self.read == 0 && angles.is_empty();
-                    if first && is_header(&record).map_err(|e| e.at(&place))? {
-                        continue;
-                    }
-                    let pair = angles_of(numbers(&record).map_err(|e| e.at(&place))?);
-                    pair.check().map_err(|e| e.at(&place))?;
+            Source::Csv(lines) => {
+                while angles.len() < most
+                    && let Some(pair) = lines.next(&self.path)?
+                {
                     angles.push(pair);
                 }
             }
@@ -108,43 +99,71 @@ fn angles_of([theta_i, phi_i, theta_e, phi_e]: [f64; 4]) -> Angles {
 
 // ---- CSV -------------------------------------------------------------------------------------------
 
-fn read_record(reader: &mut csv::Reader<File>, record: &mut csv::StringRecord, path: &Path) -> Result<bool> {
-    reader.read_record(record).map_err(|error| {
-        let line = error.position().map_or(0, csv::Position::line);
-        match error.into_kind() {
-            csv::ErrorKind::Io(error) => Error::io("read", path)(error),
-            csv::ErrorKind::Utf8 { .. } => {
-                Error::input(format!("{}: line {line}: it is not UTF-8", path.display()))
-            }
-            other => Error::input(format!("{}: line {line}: {other:?}", path.display())),
-        }
-    })
+/// A CSV file, line by line. Blank lines and comments are passed over.
+struct Lines {
+    file: BufReader<File>,
+    line: u64,
+    bytes: Vec<u8>,
+    began: bool,
 }
 
-/// Whether a first record names the columns.
+impl Lines {
+    /// The next four numbers; `None` at the end.
+    fn next(&mut self, path: &Path) -> Result<Option<Angles>> {
+        /// No line of four numbers is so long.
+        const LONGEST: u64 = 1 << 16;
+        loop {
+            self.bytes.clear();
+            let mut file = self.file.by_ref().take(LONGEST);
+            if file.read_until(b'\n', &mut self.bytes).map_err(Error::io("read", path))? == 0 {
+                return Ok(None);
+            }
+            self.line += 1;
+            let place = |error: Error| error.at(format!("{}: line {}", path.display(), self.line));
+            let text = str::from_utf8(&self.bytes).map_err(|_| place(Error::input("it is not UTF-8")))?;
+            // Spreadsheets begin a file with a byte order mark.
+            let text = text.trim_start_matches('\u{feff}').trim();
+            if text.is_empty() || text.starts_with('#') {
+                continue;
+            }
+            let first = !std::mem::replace(&mut self.began, true);
+            if first && is_header(text).map_err(place)? {
+                continue;
+            }
+            return numbers(text)
+                .map(angles_of)
+                .and_then(|pair| pair.check().map(|()| Some(pair)))
+                .map_err(place);
+        }
+    }
+}
+
+fn fields(line: &str) -> impl Iterator<Item = &str> {
+    line.split(',').map(|field| field.trim().trim_matches('"'))
+}
+
+/// Whether a first line names the columns.
 ///
 /// # Errors
 /// When it names others, or in another order.
-fn is_header(record: &csv::StringRecord) -> Result<bool> {
-    let is_word =
-        |field: &str| field.starts_with(|c: char| c.is_alphabetic()) && field.parse::<f64>().is_err();
-    if !record.iter().any(is_word) {
-        return Ok(false);
-    }
-    if record.iter().eq(COLUMNS) {
+fn is_header(line: &str) -> Result<bool> {
+    if fields(line).eq(COLUMNS) {
         return Ok(true);
     }
-    let found: Vec<_> = record.iter().collect();
-    Err(Error::input(format!("the columns are \"{}\"; give \"{}\"", found.join(","), COLUMNS.join(","))))
+    let is_word = |field: &str| field.starts_with(char::is_alphabetic) && field.parse::<f64>().is_err();
+    match fields(line).any(is_word) {
+        true => Err(Error::input(format!("the columns are \"{line}\"; give \"{}\"", COLUMNS.join(",")))),
+        false => Ok(false),
+    }
 }
 
-fn numbers(record: &csv::StringRecord) -> Result<[f64; 4]> {
-    if record.len() != 4 {
-        let wanted = COLUMNS.join(",");
-        return Err(Error::input(format!("{} columns; give four: {wanted}", record.len())));
+fn numbers(line: &str) -> Result<[f64; 4]> {
+    let found = fields(line).count();
+    if found != COLUMNS.len() {
+        return Err(Error::input(format!("{found} columns; give four: {}", COLUMNS.join(","))));
     }
     let mut numbers = [0.0; 4];
-    for ((number, field), name) in numbers.iter_mut().zip(record).zip(COLUMNS) {
+    for ((number, field), name) in numbers.iter_mut().zip(fields(line)).zip(COLUMNS) {
         *number = field.parse().map_err(|_| Error::input(format!("{name} = \"{field}\" is not a number")))?;
     }
     Ok(numbers)
@@ -153,17 +172,21 @@ fn numbers(record: &csv::StringRecord) -> Result<[f64; 4]> {
 // ---- NPY -------------------------------------------------------------------------------------------
 
 impl Number {
-    /// Its value in f64. The f32 nearest to π/2 lies above it, and means it.
-    fn read(self, bytes: &[u8]) -> f64 {
-        let little =
-            |bytes: &[u8]| bytes.iter().rev().fold(0, |word: u64, &byte| word << 8 | u64::from(byte));
-        let big = |bytes: &[u8]| bytes.iter().fold(0, |word: u64, &byte| word << 8 | u64::from(byte));
-        let word = if self.big_endian { big(bytes) } else { little(bytes) };
-        if self.bytes == 8 {
-            return f64::from_bits(word);
+    /// Four of them, in f64. The f32 nearest to π/2 lies above it, and means it.
+    fn read(self, bytes: &[u8]) -> [f64; 4] {
+        let widen = |x: f32| if x == FRAC_PI_2 as f32 { FRAC_PI_2 } else { f64::from(x) };
+        let mut numbers = [f64::NAN; 4];
+        for (k, number) in numbers.iter_mut().enumerate() {
+            let four = |at: usize| bytes[at..at + 4].try_into().unwrap_or_default();
+            let eight = |at: usize| bytes[at..at + 8].try_into().unwrap_or_default();
+            *number = match self {
+                Self { bytes: 8, big_endian: false } => f64::from_le_bytes(eight(8 * k)),
+                Self { bytes: 8, big_endian: true } => f64::from_be_bytes(eight(8 * k)),
+                Self { big_endian: false, .. } => widen(f32::from_le_bytes(four(4 * k))),
+                Self { big_endian: true, .. } => widen(f32::from_be_bytes(four(4 * k))),
+            };
         }
-        let value = f32::from_bits(word as u32);
-        if value == FRAC_PI_2 as f32 { FRAC_PI_2 } else { f64::from(value) }
+        numbers
     }
 }
 

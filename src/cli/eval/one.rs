@@ -39,7 +39,7 @@ pub fn run(args: &Args, angles: &Angles) -> Result<()> {
     let mu_i = angles.theta_i.cos().max(MU_MIN);
     let f_cos: Vec<_> = value.iter().map(|&f| f64::from(f) * mu_i).collect();
     // Less than an azimuth's last digit.
-    let delta_phi = Some(angles.delta_phi()).filter(|d| d.abs() > f64::EPSILON).unwrap_or(0.0);
+    let delta_phi = Some(angles.delta_phi()).filter(|d| d.abs() > 1e-15).unwrap_or(0.0);
     let precision = if matches!(evaluator, Evaluator::Cpu) { "f64" } else { "f32" };
 
     if args.json {
