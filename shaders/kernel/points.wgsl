@@ -16,13 +16,15 @@ struct Point {
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    if id.x >= job.end {
+    if ADD && id.x >= job.end {
         return;
     }
-    let p = points[id.x];
+    // What is beyond the end does the last one over again: cheaper than a mask on every store.
+    let point = min(id.x, job.end - 1u);
+    let p = points[point];
     let pair = Pair(p.hz2, p.dt2, p.ss, p.sd, p.mu_i, p.mu_e, 0.0, 0.0);
     let ab = lobe(pair, Azimuth(p.sin2, p.cos2, 0.0, 0.0), job.alpha);
-    let at = (job.base + id.x) * CHANNELS;
+    let at = (job.base + point) * CHANNELS;
     for (var c = 0u; c < CHANNELS; c++) {
         if ADD {
             values[at + c] += channel(c, ab);
