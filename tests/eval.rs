@@ -79,7 +79,7 @@ fn are_those_of_a_table() {
 /// δφ of the very numbers given, in whole units of 2⁻¹⁰⁰: an azimuth below 8 has no digit beyond 2⁻¹⁰⁰
 /// that counts, and π has 30 decimal digits so.
 fn exact_delta_phi(angles: &Angles) -> f64 {
-    const PI_100: i128 = 0x3243_F6A8_885A_308D_3131_98A2_E0;
+    const PI_100: i128 = 0x0032_43F6_A888_5A30_8D31_3198_A2E0;
     let fixed = |x: f64| {
         let (bits, sign) = (x.abs().to_bits(), x.signum() as i128);
         let (exponent, fraction) = ((bits >> 52) as i32, (bits & ((1 << 52) - 1)) as i128);
@@ -112,7 +112,7 @@ fn the_relative_azimuth_keeps_its_digits() {
     }
     for pair in &angles {
         let (delta, exact) = (pair.delta_phi(), exact_delta_phi(pair));
-        assert!(-PI < delta + 1e-15 && delta <= PI, "{pair:?}: {delta}");
+        assert!((-PI..=PI).contains(&delta), "{pair:?}: {delta}");
         // Either end of the circle is the same direction.
         let off = (delta - exact).abs().min(2.0 * PI - (delta - exact).abs());
         assert!(off <= 2.0 * f64::EPSILON * exact.abs() + 1e-30, "{pair:?}: {delta:e}, {exact:e}");
@@ -120,7 +120,8 @@ fn the_relative_azimuth_keeps_its_digits() {
 }
 
 /// Pairs a millionth of a radian and less from the mirror direction, in θ, in φ and in both, on lobes that
-/// are as narrow: within the budget of values, which knows no angle.
+/// are as narrow: within the budget of values, which knows no angle. There f is not the peak's: with
+/// tan θm = 5e-7 and α = 1e-6, D is (1 + 0.5²)⁻² = 0.64 of it.
 #[test]
 fn a_millionth_of_a_radian_from_the_mirror_is_seen() {
     let mut angles = Vec::new();
@@ -137,7 +138,10 @@ fn a_millionth_of_a_radian_from_the_mirror_is_seen() {
         let lobe = unit("ggx", alpha);
         let alpha = lobe.roughness.unwrap().powi(2);
         for evaluator in evaluators() {
-            let values = evaluate(&mut Points::new(evaluator, std::slice::from_ref(&lobe)).unwrap(), &angles);
+            let mut points = Points::new(evaluator, std::slice::from_ref(&lobe)).unwrap();
+            let values = evaluate(&mut points, &angles);
+            let beside = values[2] / values[0];
+            assert!(alpha > 2e-6 || (beside / 0.64 - 1.0).abs() < 0.01, "a millionth is lost: {beside}");
             for (pair, value) in angles.iter().zip(values.chunks_exact(2)) {
                 let delta_phi = exact_delta_phi(pair);
                 let at = reference::Angles { theta_i: pair.theta_i, theta_e: pair.theta_e, delta_phi };
