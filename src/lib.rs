@@ -23,6 +23,7 @@
 //! | [`check`] | a table's texels against the reference | how they were computed |
 //! | [`trade`] | every method at every cost: time and error, and the front | files, devices |
 //! | [`bake`] | the order of it all: evaluate, look, check, write | how any of it is done |
+//! | [`points`] | values at any list of pairs of directions, unlooked at | tables, files |
 //! | [`storage`], `interpolation`, `optimise` | what rounding and bilinear look-ups cost, and the least bytes for a tolerance | devices, files |
 //! | [`table`], [`axis`], [`quantity`], [`storage`] | what a table is | where it came from |
 //! | `interpolation`, `optimise` | what a bilinear reader gets, and the cheapest table for it | devices |
@@ -80,6 +81,7 @@ pub mod models;
 mod optimise;
 pub mod pair;
 pub mod plan;
+pub mod points;
 pub mod quadrature;
 pub mod quantity;
 pub mod reference;

@@ -5,11 +5,12 @@ struct Job {
     weights: array<vec4f, 3>, // channel c = dot(weights[c].xy + weights[c].zw, (A, B)): the latter is what f32 drops
     first: u32,               // first invocation of this dispatch
     end: u32,                 // one past its last
-    base: u32,                // the invocation whose result is the first of the output buffer
+    base: u32,                // the result that is the first of the output buffer; of points, where theirs begin
     columns: u32,             // counts, by kernel
     azimuths: u32,
     nodes: u32,
     tiles: u32,
+    alpha: f32,               // of a list of points
 }
 
 const INV_PI: real = 0.3183098861837907;

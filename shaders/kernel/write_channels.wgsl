@@ -1,4 +1,4 @@
-// An integral that is all of a texel, as channels. Not a loop over them: software drivers take longer to
+// A value or an integral that is all of a texel, as channels. Not a loop over them: software drivers take longer to
 // start one than the integral takes.
 
 @group(0) @binding(1) var<storage, read_write> values: array<real>;

@@ -1,17 +1,17 @@
 //! `gonio eval`
 
-use super::{HEADING, print, print_json};
+mod many;
+mod one;
+
 use crate::axis::{Axis, Variable};
-use crate::bake::{Evaluator, Stages, Unobserved};
-use crate::check::{self, Check};
 use crate::error::{Error, Result};
 use crate::gpu::DeviceChoice;
 use crate::models;
 use crate::plan::TablePlan;
+use crate::points::Angles;
 use crate::quantity::BRDF;
 use crate::scene;
-use serde_json::json;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -30,17 +30,27 @@ pub struct Args {
     #[arg(long, value_name = "KEY=VALUE", requires = "model")]
     set: Vec<String>,
     /// Zenith angle of incidence: radians, or degrees as 45deg
+    #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true,
+          required_unless_present = "pairs")]
+    theta_i: Option<f64>,
+    /// Azimuth of incidence [default: 0]
     #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true)]
-    theta_i: f64,
-    /// Azimuth of incidence
-    #[arg(long, value_name = "ANGLE", value_parser = angle, default_value = "0", allow_hyphen_values = true)]
-    phi_i: f64,
+    phi_i: Option<f64>,
     /// Zenith angle of exitance
-    #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true)]
-    theta_e: f64,
+    #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true,
+          required_unless_present = "pairs")]
+    theta_e: Option<f64>,
     /// Azimuth of exitance [default: opposite to that of incidence, where a mirror reflects]
     #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true)]
     phi_e: Option<f64>,
+    /// In place of one pair, a list: NPY (n, 4) in float64 or float32, or CSV; columns theta_i, phi_i,
+    /// theta_e, phi_e in radians
+    #[arg(long, value_name = "FILE", requires = "out",
+          conflicts_with_all = ["theta_i", "phi_i", "theta_e", "phi_e"])]
+    pairs: Option<PathBuf>,
+    /// The file for the list's values: NPY (n, channels) in float32, or CSV, by its extension
+    #[arg(long, short, value_name = "FILE", requires = "pairs")]
+    out: Option<PathBuf>,
     /// auto, cpu, or a part of an adapter's name
     #[arg(long, value_name = "NAME", default_value = "auto")]
     device: DeviceChoice,
@@ -52,10 +62,17 @@ pub struct Args {
 const AFTER_HELP: &str = "\
 Examples:
   gonio eval --model ggx --set roughness=0.3 --theta-i 45deg --theta-e 45deg
-  gonio eval --model ggx --set alpha=0.1 --set f0=[1.0,0.78,0.34] --theta-i 0.5 --theta-e 0.5 --phi-e 3.0
+  gonio eval --model ggx --set alpha=0.1 --set f0=[1,0.78,0.34] --theta-i 0.5 --theta-e 0.5 --phi-e 3
   gonio eval recipe.toml --material gold --theta-i 30deg --theta-e 60deg
+  gonio eval recipe.toml --material gold --pairs pairs.npy --out values.npy
 
-Exit codes: 0 success, 2 bad input, 3 no device";
+A list in CSV; its first line and those that begin with # may be left out:
+  theta_i,phi_i,theta_e,phi_e
+  # the mirror direction, and a millionth of a radian from it
+  0.7,0,0.7,3.141592653589793
+  0.7,0,0.700001,3.141592653589793
+
+Exit codes: 0 success, 1 values not finite or negative, 2 bad input, 3 no device, 130 interrupted";
 
 fn angle(text: &str) -> Result<f64, String> {
     let (number, scale) = match text.strip_suffix("deg") {
@@ -68,40 +85,25 @@ fn angle(text: &str) -> Result<f64, String> {
 }
 
 pub fn run(args: &Args) -> Result<()> {
-    let delta_phi = args.phi_e.map_or(0.0, |phi_e| wrap(phi_e - args.phi_i - PI));
-    let axes = vec![
-        Axis::listed(Variable::ThetaI, vec![args.theta_i])?,
-        Axis::listed(Variable::ThetaE, vec![args.theta_e])?,
-        // The models do not tell left from right.
-        Axis::listed(Variable::DeltaPhi, vec![delta_phi.abs()])?,
-    ];
-    let plan = subject(args, axes)?;
-    let (evaluator, line) = Evaluator::choose(&args.device)?;
-    let table = evaluator.bake(&plan, Check::All, &mut Stages::default(), &Unobserved)?;
-    let reference = check::reference(&plan, 0);
-    let difference = table.error.measured_max;
-
-    if args.json {
-        return print_json(&json!({
-            "subject": plan.subject, "parameters": table.parameters, "unit": table.unit,
-            "theta_i": args.theta_i, "theta_e": args.theta_e, "delta_phi": delta_phi,
-            "channels": table.channels, "device": line, "value": table.values, "precision": table.precision,
-            "reference": reference, "relative_difference": difference,
-        }));
+    match (&args.pairs, &args.out, args.theta_i, args.theta_e) {
+        (Some(pairs), Some(out), ..) => many::run(args, pairs, out),
+        (None, _, Some(theta_i), Some(theta_e)) => {
+            let phi_i = args.phi_i.unwrap_or(0.0);
+            one::run(args, &Angles { theta_i, phi_i, theta_e, phi_e: args.phi_e.unwrap_or(phi_i + PI) })
+        }
+        _ => Err(Error::input("give --theta-i and --theta-e, or --pairs and --out")),
     }
-    let show = |values: &[f64]| {
-        let words: Vec<_> =
-            table.channels.iter().zip(values).map(|(c, v)| format!("{c} = {v:.8e}")).collect();
-        words.join("  ")
-    };
-    print(&format!("{HEADING}f({}){HEADING:#} in sr⁻¹, δφ = {delta_phi:.6} rad", plan.subject))?;
-    print(&format!("device      {}    {line}", show(&table.texel(0))))?;
-    print(&format!("reference   {}    f64", show(&reference)))?;
-    print(&format!("difference  {:.1e} relative", difference.unwrap_or(f64::NAN)))
 }
 
-/// What to evaluate: a material, or a model with parameters, in a recipe's own words.
-fn subject(args: &Args, axes: Vec<Axis>) -> Result<TablePlan> {
+/// What to evaluate, as a table of one texel: a material, or a model with parameters, in a recipe's own
+/// words.
+fn subject(args: &Args, angles: &Angles) -> Result<TablePlan> {
+    let axes = vec![
+        Axis::listed(Variable::ThetaI, vec![angles.theta_i])?,
+        Axis::listed(Variable::ThetaE, vec![angles.theta_e])?,
+        // The models do not tell left from right.
+        Axis::listed(Variable::DeltaPhi, vec![angles.delta_phi().abs()])?,
+    ];
     let (scene, name) = match (&args.scene, &args.material, &args.model) {
         (Some(path), Some(name), _) => (scene::read(path)?, name.clone()),
         (_, _, Some(model)) => {
@@ -121,8 +123,7 @@ fn subject(args: &Args, axes: Vec<Axis>) -> Result<TablePlan> {
     TablePlan::material("eval", &BRDF, &scene, &name, axes)
 }
 
-/// An angle in (−π, π].
-fn wrap(angle: f64) -> f64 {
-    let wrapped = angle.rem_euclid(TAU);
-    if wrapped > PI { wrapped - TAU } else { wrapped }
+/// Whether a value keeps what every BRDF promises.
+fn is_sane(value: f32) -> bool {
+    value.is_finite() && value >= 0.0
 }

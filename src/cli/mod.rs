@@ -23,7 +23,7 @@ struct Cli {
 enum Command {
     /// Bake the tables that a scene needs, and measure their error
     Bake(bake::Args),
-    /// Evaluate a BRDF for one pair of directions
+    /// Evaluate a BRDF for one pair of directions, or a list of them
     Eval(eval::Args),
     /// Measure time against error: every method at every cost
     Trade(trade::Args),

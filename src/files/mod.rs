@@ -1,11 +1,16 @@
-//! Files: one writer a format, and whole sets of tables written all or nothing.
+//! Files: one writer a format, and whole sets of tables written all or nothing; lists of directions, and
+//! values at them.
 
 mod canvas;
 mod colormap;
 mod entry;
 mod exr;
+#[cfg(feature = "cli")]
+mod list;
 mod manifest;
 mod npy;
+#[cfg(feature = "cli")]
+mod pairs;
 mod panel;
 mod png;
 mod scale;
@@ -14,8 +19,12 @@ mod stream;
 mod tradeoff;
 
 pub use entry::TableEntry;
+#[cfg(feature = "cli")]
+pub(crate) use list::List;
 pub(crate) use manifest::hash;
 pub use manifest::{read_manifest, sha256, verify};
+#[cfg(feature = "cli")]
+pub(crate) use pairs::Pairs;
 pub use set::{Files, TableSet};
 pub(crate) use stream::Tiles;
 pub(crate) use tradeoff::draw as draw_trade;

@@ -14,9 +14,13 @@ pub(super) fn encode(table: &Table) -> Result<Vec<u8>> {
 
 /// The file up to its first value, for a table in f32 whose values come later.
 pub(super) fn head(table: &Table) -> Result<Vec<u8>> {
+    head_of(&shape(table)).map_err(|error| Error::Internal(format!("table {}: NPY: {error}", table.name)))
+}
+
+/// The file up to its first value, for an array of f32.
+pub(super) fn head_of(shape: &[u64]) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    let fault = |error| Error::Internal(format!("table {}: NPY: {error}", table.name));
-    drop(begin::<f32>("<f4", &shape(table), &mut bytes).map_err(fault)?);
+    drop(begin::<f32>("<f4", shape, &mut bytes)?);
     Ok(bytes)
 }
 

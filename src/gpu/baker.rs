@@ -52,9 +52,9 @@ pub struct Prepared {
 
 /// One dispatch, ready to encode.
 pub(super) struct Step {
-    pipeline: wgpu::ComputePipeline,
-    bind_group: wgpu::BindGroup,
-    workgroups: [u32; 2],
+    pub pipeline: wgpu::ComputePipeline,
+    pub bind_group: wgpu::BindGroup,
+    pub workgroups: [u32; 2],
     /// How many evaluations it does, to weigh progress with.
     pub evaluations: u64,
 }
@@ -380,6 +380,16 @@ impl Baker {
         });
         self.queue.write_buffer(&buffer, 0, contents);
         buffer
+    }
+
+    /// A buffer for what kernels read, to be written later.
+    pub(super) fn input(&self, bytes: usize) -> wgpu::Buffer {
+        self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: bytes as u64,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        })
     }
 
     /// A buffer for results. wgpu clears it when it is first used; kernels write all of it.

@@ -16,6 +16,10 @@ pub enum Kernel {
     Values,
     /// The same, added to those of earlier lobes.
     AddValues,
+    /// Values at a list of pairs of directions.
+    Points,
+    /// The same, added to those of earlier lobes.
+    AddPoints,
     /// Integrals in slopes, for tolerances that f32 can meet.
     Slopes,
     /// The same for finer ones.
@@ -64,7 +68,7 @@ pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize, precision
         Kernel::Values | Kernel::AddValues => source += &format!("const WINDOW = {VALUE_WINDOW}u;\n"),
         _ => {}
     }
-    let add = matches!(kernel, Kernel::AddValues | Kernel::AddSum);
+    let add = matches!(kernel, Kernel::AddValues | Kernel::AddPoints | Kernel::AddSum);
     source += &format!("const CHANNELS = {channels}u;\nconst ADD = {add};\n");
     let mut add = |part: &Part| source += &format!("\n// ---- {}\n{}", part.name, part.wgsl);
     add(&part!("kernel/job"));
@@ -96,6 +100,7 @@ impl Kernel {
             (Self::Values | Self::AddValues, 1) => &[part!("kernel/store_1"), part!("kernel/values")],
             (Self::Values | Self::AddValues, 2) => &[part!("kernel/store_2"), part!("kernel/values")],
             (Self::Values | Self::AddValues, _) => &[part!("kernel/store_3"), part!("kernel/values")],
+            (Self::Points | Self::AddPoints, _) => &[part!("kernel/points")],
             (Self::Slopes, _) => {
                 &[part!("lobe/slopes"), part!("kernel/nodes_uniform"), part!("kernel/slopes")]
             }

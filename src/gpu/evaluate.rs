@@ -25,7 +25,7 @@ struct Slot {
 }
 
 /// A result on its way to the host.
-struct Flight {
+pub(super) struct Flight {
     last: wgpu::SubmissionIndex,
     mapped: Receiver<Result<(), wgpu::BufferAsyncError>>,
     bytes: u64,
@@ -99,7 +99,7 @@ impl Device {
                 self.arrive(&flight)?;
                 times.dispatch += start.elapsed().as_secs_f64();
                 let start = Instant::now();
-                self.land(staging, flight, layout, values)?;
+                self.land(staging, flight, &mut |bytes| layout.append(bytes, values))?;
                 times.readback += start.elapsed().as_secs_f64();
                 sink(last, values)?;
                 tick(share)?;
@@ -156,11 +156,11 @@ impl Device {
         let encoder = self.baker.device.create_command_encoder(&Default::default());
         let flight = self.send(encoder, &tile.buffer, &staging, tile.buffer.size());
         self.arrive(&flight)?;
-        self.land(&staging, flight, layout, values)
+        self.land(&staging, flight, &mut |bytes| layout.append(bytes, values))
     }
 
     /// Submits what is recorded, and after it the copy of a result to where the host reads it.
-    fn send(
+    pub(super) fn send(
         &self,
         mut encoder: wgpu::CommandEncoder,
         output: &wgpu::Buffer,
@@ -178,23 +178,22 @@ impl Device {
     }
 
     /// Waits until a result is there.
-    fn arrive(&self, flight: &Flight) -> Result<()> {
+    pub(super) fn arrive(&self, flight: &Flight) -> Result<()> {
         self.poll(wgpu::PollType::Wait { submission_index: Some(flight.last.clone()), timeout: None })
     }
 
-    /// Appends the values of a result that is there.
-    fn land(
+    /// Shows the bytes of a result that is there.
+    pub(super) fn land(
         &self,
         staging: &wgpu::Buffer,
         flight: Flight,
-        layout: &Layout,
-        values: &mut Values,
+        take: &mut dyn FnMut(&[u8]),
     ) -> Result<()> {
         let Flight { mapped, bytes, .. } = flight;
         let lost = |why: String| Error::Device(format!("{}: cannot read results back: {why}", self.name()));
         mapped.recv().map_err(|e| lost(e.to_string()))?.map_err(|e| lost(e.to_string()))?;
         let view = staging.get_mapped_range(..bytes).map_err(|e| lost(e.to_string()))?;
-        layout.append(&view, values);
+        take(&view);
         drop(view);
         staging.unmap();
         Ok(())
@@ -216,7 +215,7 @@ impl Device {
         Slot { output: self.baker.output(bytes), staging: self.staging(bytes as u64), flight: None }
     }
 
-    fn staging(&self, bytes: u64) -> wgpu::Buffer {
+    pub(super) fn staging(&self, bytes: u64) -> wgpu::Buffer {
         self.baker.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
             size: bytes,

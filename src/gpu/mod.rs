@@ -8,6 +8,7 @@ mod compose;
 mod device;
 mod evaluate;
 mod measure;
+mod points;
 mod stage;
 mod texture;
 
@@ -15,4 +16,5 @@ pub use baker::{Baker, Prepared, Recorded};
 pub use compose::{Kernel, compose, validate};
 pub use device::{Adapter, Device, DeviceChoice, INSTALL, adapters};
 pub(crate) use measure::{Rates, Warm};
+pub(crate) use points::Points;
 pub use texture::TextureFormat;

@@ -75,7 +75,7 @@ pub(super) struct Job {
     pub azimuths: u32,
     pub nodes: u32,
     pub tiles: u32,
-    pub pad: u32,
+    pub alpha: f32,
 }
 
 impl Stages {
@@ -238,7 +238,7 @@ fn gcd(a: usize, b: usize) -> usize {
 
 impl Job {
     /// The channels' weights, times `scale`.
-    fn new(lobe: &Lobe, scale: f64) -> Self {
+    pub fn new(lobe: &Lobe, scale: f64) -> Self {
         let mut weights = [[0.0; 4]; 3];
         for (row, &weight) in weights.iter_mut().zip(&lobe.weights) {
             let [a, b] = weight.map(|x| scale * x);

@@ -31,15 +31,15 @@ impl Floor {
 pub(super) fn operations(plan: &TablePlan) -> Option<f64> {
     let [lobe] = &plan.lobes[..] else { return None };
     (lobe.model.name == "ggx").then_some(match plan.rule {
-        // ndf_map 23, slope_integrand 36 with masking 9 and Fresnel 4, the loop of `side` 5
-        Rule::Warped => 64.0,
-        // half_vector 10, ndf 6, fresnel 8, their product, weight and sum 7; visibility is lifted
-        Rule::Grid { .. } | Rule::Gauss { .. } => 31.0,
-        // ndf_facet 3, its weight 2, facet_estimate 29 with masking 9 and Fresnel 4, sums 2
-        Rule::Hammersley { .. } => 36.0,
-        // vndf_facet 16, facet_estimate 29, sums 2
-        Rule::Vndf { .. } => 47.0,
+        // ndf_map 12, slope_term 36 with masking 8 and Fresnel 4, the loop of `integral` 4
+        Rule::Warped => 52.0,
+        // half_vector 10, ndf 5, fresnel 8, their product, weight and sum 7; visibility is lifted
+        Rule::Grid { .. } | Rule::Gauss { .. } => 30.0,
+        // ndf_facet 3, its weight 2, facet_estimate 27 with masking 8 and Fresnel 4, sums 2
+        Rule::Hammersley { .. } => 34.0,
+        // vndf_facet 16, facet_estimate 27, sums 2
+        Rule::Vndf { .. } => 45.0,
         // as vndf; two numbers of PCG 26, the cosine 19
-        Rule::Random { .. } => 92.0,
+        Rule::Random { .. } => 90.0,
     })
 }

@@ -1,0 +1,94 @@
+//! One pair of directions: f on the device, by the reference, and what it is made of.
+
+use super::{Args, is_sane, subject};
+use crate::bake::Evaluator;
+use crate::check::{self, VALUE_FLOOR};
+use crate::cli::{HEADING, print, print_json};
+use crate::error::{Error, Result};
+use crate::pair::MU_MIN;
+use crate::plan::{Lobe, TablePlan};
+use crate::points::{Angles, Points};
+use crate::reference;
+use serde::Serialize;
+use serde_json::json;
+
+/// What a microfacet lobe is made of, by the reference.
+#[derive(Serialize)]
+struct Factors {
+    model: &'static str,
+    /// D(ωm), sr⁻¹.
+    #[serde(rename = "D")]
+    d: f64,
+    #[serde(rename = "G2")]
+    g2: f64,
+    /// F0 (1 − Fc) + F90 Fc of each channel.
+    #[serde(rename = "F")]
+    f: Vec<f64>,
+}
+
+pub fn run(args: &Args, angles: &Angles) -> Result<()> {
+    let plan = subject(args, angles)?;
+    angles.check()?;
+    let (evaluator, line) = Evaluator::choose(&args.device)?;
+    let mut value = Vec::new();
+    Points::new(&evaluator, &plan.lobes)?.evaluate(&[*angles], &mut value)?;
+    let reference = check::reference(&plan, 0);
+    let difference = relative_difference(&value, &reference);
+    let factors: Vec<_> = plan.lobes.iter().filter_map(|lobe| factors(lobe, angles)).collect();
+    // As everywhere: f diverges where both directions graze.
+    let mu_i = angles.theta_i.cos().max(MU_MIN);
+    let f_cos: Vec<_> = value.iter().map(|&f| f64::from(f) * mu_i).collect();
+    // Less than an azimuth's last digit.
+    let delta_phi = Some(angles.delta_phi()).filter(|d| d.abs() > 1e-15).unwrap_or(0.0);
+    let precision = if matches!(evaluator, Evaluator::Cpu) { "f64" } else { "f32" };
+
+    if args.json {
+        print_json(&json!({
+            "subject": plan.subject, "parameters": plan.parameters(), "unit": plan.quantity.unit,
+            "theta_i": angles.theta_i, "phi_i": angles.phi_i, "theta_e": angles.theta_e, "phi_e": angles.phi_e,
+            "delta_phi": delta_phi,
+            "channels": plan.channels, "device": line, "value": value, "precision": precision,
+            "reference": reference, "relative_difference": difference,
+            "f_cos_theta_i": f_cos, "factors": factors,
+        }))?;
+    } else {
+        let value: Vec<_> = value.iter().copied().map(f64::from).collect();
+        print(&format!("{HEADING}f({}){HEADING:#} in sr⁻¹, δφ = {delta_phi} rad", plan.subject))?;
+        print(&format!("device      {}    {line}", by_channel(&plan, &value)))?;
+        print(&format!("reference   {}    f64", by_channel(&plan, &reference)))?;
+        print(&format!("difference  {difference:.1e} relative"))?;
+        print(&format!("f cos θi    {}    of the device's f", by_channel(&plan, &f_cos)))?;
+        for Factors { model, d, g2, f } in &factors {
+            print(&format!("{HEADING}{model}{HEADING:#}, f = F D G2 / (4 cos θi cos θe), by the reference"))?;
+            print(&format!("D           {d:.8e} sr⁻¹"))?;
+            print(&format!("G2          {g2:.8e}"))?;
+            print(&format!("F           {}", by_channel(&plan, f)))?;
+        }
+    }
+    if value.iter().copied().all(is_sane) {
+        return Ok(());
+    }
+    Err(Error::Promise(format!("f({}) is not finite, or negative", plan.subject)))
+}
+
+/// The largest of the channels; NaN if any is.
+fn relative_difference(value: &[f32], reference: &[f64]) -> f64 {
+    let differences =
+        value.iter().zip(reference).map(|(&f, r)| (f64::from(f) - r).abs() / r.max(VALUE_FLOOR));
+    differences.fold(0.0, |most, d| if most >= d { most } else { d })
+}
+
+fn factors(lobe: &Lobe, angles: &Angles) -> Option<Factors> {
+    let Angles { theta_i, theta_e, .. } = *angles;
+    let delta_phi = angles.delta_phi();
+    let alpha = lobe.roughness.map_or(0.0, |r| r * r);
+    let factors = lobe.model.reference?.factors(&reference::Angles { theta_i, theta_e, delta_phi }, alpha)?;
+    let f = |&[f0, f90]: &[f64; 2]| f0 * (1.0 - factors.fc) + f90 * factors.fc;
+    let f = lobe.weights.iter().map(f).collect();
+    Some(Factors { model: lobe.model.name, d: factors.d, g2: factors.g2, f })
+}
+
+fn by_channel(plan: &TablePlan, values: &[f64]) -> String {
+    let words: Vec<_> = plan.channels.iter().zip(values).map(|(c, v)| format!("{c} = {v:.8e}")).collect();
+    words.join("  ")
+}

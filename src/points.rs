@@ -1,0 +1,222 @@
+//! Values of a BRDF at any list of pairs of directions, as the device computes them: never sanitised, so
+//! that whoever looks for faults finds them.
+//!
+//! ```
+//! use gonio::{bake::Evaluator, models, plan::Lobe, points::{Angles, Points}};
+//!
+//! # fn main() -> gonio::Result<()> {
+//! // F0 = 1 and F90 = 1: GGX without Fresnel.
+//! let lobe = Lobe { model: models::find("ggx")?, roughness: Some(0.3), weights: vec![[1.0, 1.0]] };
+//! let mut points = Points::new(&Evaluator::Cpu, &[lobe])?;
+//! let mut values = Vec::new();
+//! points.evaluate(&[Angles { theta_i: 0.5, phi_i: 0.0, theta_e: 0.4, phi_e: 3.0 }], &mut values)?;
+//! assert_eq!(values.len(), 1);
+//! # Ok(())
+//! # }
+//! ```
+
+use crate::bake::Evaluator;
+use crate::error::{Error, Result};
+use crate::gpu;
+use crate::models::ALPHA_MIN_VALUE;
+use crate::pair::{Azimuth, Pair};
+use crate::plan::Lobe;
+use rayon::prelude::*;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// A pair of directions, both pointing away from the surface, rad.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Angles {
+    /// Zenith angle of incidence, [0, π/2].
+    pub theta_i: f64,
+    /// Azimuth of incidence; any number of turns up to [`PHI_MAX`].
+    pub phi_i: f64,
+    /// Zenith angle of exitance, [0, π/2].
+    pub theta_e: f64,
+    /// Azimuth of exitance, as that of incidence.
+    pub phi_e: f64,
+}
+
+/// The largest azimuth, rad: beyond it an f64 is no direction, as its digits end at 1e-7.
+pub const PHI_MAX: f64 = 1e9;
+
+/// π = `PI` + this, to 33 digits.
+const PI_REST: f64 = 1.224_646_799_147_353_2e-16;
+
+impl Angles {
+    /// δφ = φe − φi − π in (−π, π], right to its last digits: 0 is the mirror direction.
+    ///
+    /// φe − φi is kept with what its rounding drops, and the nearest odd multiple of π, π in two parts,
+    /// taken from it without rounding: near the mirror direction nothing is lost.
+    pub fn delta_phi(&self) -> f64 {
+        let (a, b) = (self.phi_e, -self.phi_i);
+        let sum = a + b;
+        let b_part = sum - a;
+        let dropped = (a - (sum - b_part)) + (b - b_part); // Knuth's TwoSum
+        let turns = 2.0 * ((sum - PI) / TAU).round() + 1.0;
+        let delta = (-turns).mul_add(PI, sum) + (dropped - turns * PI_REST);
+        // The number of turns is rounded too.
+        if delta > PI {
+            delta - TAU
+        } else if delta < -PI {
+            delta + TAU
+        } else {
+            delta
+        }
+    }
+
+    /// Whether these are directions.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with the angle that is not.
+    pub fn check(&self) -> Result<()> {
+        for (name, theta) in [("theta_i", self.theta_i), ("theta_e", self.theta_e)] {
+            if !(0.0..=FRAC_PI_2).contains(&theta) {
+                return Err(Error::input(format!(
+                    "{name} = {theta} is outside [0, π/2] = [0, {FRAC_PI_2}] rad"
+                )));
+            }
+        }
+        for (name, phi) in [("phi_i", self.phi_i), ("phi_e", self.phi_e)] {
+            if !(-PHI_MAX..=PHI_MAX).contains(&phi) {
+                return Err(Error::input(format!(
+                    "{name} = {phi} is outside ±{PHI_MAX:e} rad; take off whole turns"
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// The factors that everything is made of.
+    pub(crate) fn factors(&self) -> (Pair, Azimuth) {
+        (Pair::new(self.theta_i, self.theta_e), Azimuth::new(self.delta_phi()))
+    }
+}
+
+/// Evaluates a sum of lobes at lists of directions. Pipelines and buffers are made once and kept, so a
+/// long-lived one is worth having; memory is bounded, however long the lists.
+pub struct Points<'a> {
+    lobes: Vec<Lobe>,
+    place: Place<'a>,
+}
+
+enum Place<'a> {
+    Device(Box<gpu::Points<'a>>),
+    Cpu,
+}
+
+impl<'a> Points<'a> {
+    /// For the sum of some lobes, which all have the same channels, 1 to 3.
+    ///
+    /// # Errors
+    /// When a lobe is a delta, the channels do not fit, or the device fails.
+    pub fn new(evaluator: &'a Evaluator, lobes: &[Lobe]) -> Result<Self> {
+        let channels = lobes.first().map_or(0, |lobe| lobe.weights.len());
+        if !(1..=3).contains(&channels) || lobes.iter().any(|lobe| lobe.weights.len() != channels) {
+            return Err(Error::input("a list of points takes one lobe or more, all of 1 to 3 channels"));
+        }
+        if let Some(lobe) = lobes.iter().find(|lobe| lobe.model.is_delta()) {
+            return Err(Error::input(format!("{} is a delta and has no values", lobe.model.name)));
+        }
+        let place = match evaluator {
+            Evaluator::Device(device) => Place::Device(Box::new(gpu::Points::new(device, lobes)?)),
+            Evaluator::Cpu => Place::Cpu,
+        };
+        Ok(Self { lobes: lobes.to_vec(), place })
+    }
+
+    /// Numbers of a value.
+    pub fn channels(&self) -> usize {
+        self.lobes[0].weights.len()
+    }
+
+    /// f, sr⁻¹, at each pair and for each channel, bit by bit as it was computed; in place of what `values`
+    /// held.
+    ///
+    /// # Errors
+    /// When angles are no directions, a lobe that needs a roughness has none, or the device fails.
+    pub fn evaluate(&mut self, angles: &[Angles], values: &mut Vec<f32>) -> Result<()> {
+        let alphas = self.lobes.iter().map(|lobe| {
+            let missing = || Error::input(format!("{} needs a roughness", lobe.model.name));
+            if !lobe.model.has_roughness {
+                return Ok(0.0);
+            }
+            lobe.roughness.map(|r| r * r).ok_or_else(missing).and_then(in_range)
+        });
+        let setting = alphas.collect::<Result<Vec<_>>>()?;
+        self.run(&[setting], angles, values)
+    }
+
+    /// The same at each of some α, which takes the place of every lobe's roughness: the values of the first
+    /// α at all pairs, then those of the second. It takes less than one evaluation after the other, as the
+    /// pairs' factors are made once.
+    ///
+    /// # Errors
+    /// When angles are no directions, an α is none, or the device fails.
+    pub fn sweep(&mut self, alphas: &[f64], angles: &[Angles], values: &mut Vec<f32>) -> Result<()> {
+        let setting = |alpha: f64| -> Result<Vec<f64>> {
+            let alpha = in_range(alpha)?;
+            Ok(self.lobes.iter().map(|lobe| if lobe.model.has_roughness { alpha } else { 0.0 }).collect())
+        };
+        let settings = alphas.iter().map(|&alpha| setting(alpha)).collect::<Result<Vec<_>>>()?;
+        self.run(&settings, angles, values)
+    }
+
+    /// At each setting: an α for each lobe.
+    fn run(&mut self, settings: &[Vec<f64>], angles: &[Angles], values: &mut Vec<f32>) -> Result<()> {
+        if let Some((k, Err(why))) =
+            angles.par_iter().map(Angles::check).enumerate().find_first(|(_, checked)| checked.is_err())
+        {
+            return Err(why.at(format!("point {k}")));
+        }
+        let channels = self.channels();
+        let per_setting = angles.len() * channels;
+        // What nobody computes is no number.
+        values.clear();
+        values.resize(settings.len() * per_setting, f32::NAN);
+        if values.is_empty() {
+            return Ok(());
+        }
+        match &mut self.place {
+            Place::Device(points) => points.evaluate(settings, angles, values),
+            Place::Cpu => {
+                for (k, angles) in angles.chunks(CPU_CHUNK).enumerate() {
+                    let factors: Vec<_> = angles.par_iter().map(Angles::factors).collect();
+                    for (alphas, values) in settings.iter().zip(values.chunks_mut(per_setting)) {
+                        let values = &mut values[k * CPU_CHUNK * channels..][..factors.len() * channels];
+                        let points = factors.par_iter().zip(values.par_chunks_mut(channels));
+                        points.for_each(|(factors, out)| twins(&self.lobes, alphas, factors, out));
+                    }
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+/// Factors that the CPU path holds at once: 6 MiB.
+const CPU_CHUNK: usize = 1 << 16;
+
+/// A value by the lobes' f64 twins.
+fn twins(lobes: &[Lobe], alphas: &[f64], (pair, azimuth): &(Pair, Azimuth), out: &mut [f32]) {
+    let mut sums = [0.0; 3];
+    for (lobe, &alpha) in lobes.iter().zip(alphas) {
+        let [a, b] = (lobe.model.lobe)(pair, azimuth, alpha);
+        for (sum, [weight_a, weight_b]) in sums.iter_mut().zip(&lobe.weights) {
+            *sum += weight_a * a + weight_b * b;
+        }
+    }
+    for (out, sum) in out.iter_mut().zip(sums) {
+        *out = sum as f32;
+    }
+}
+
+/// α, if it has values.
+fn in_range(alpha: f64) -> Result<f64> {
+    if (ALPHA_MIN_VALUE..=1.0).contains(&alpha) {
+        return Ok(alpha);
+    }
+    Err(Error::input(format!(
+        "α = {alpha} is outside [{ALPHA_MIN_VALUE:e}, 1]: below it is a delta, without values"
+    )))
+}
