@@ -21,6 +21,7 @@
 //! | [`gpu`] | composing, validating and recording the kernels that a plan needs | scenes, files |
 //! | [`mod@reference`] | the textbook's formulas in f64, adaptive quadrature | everything else |
 //! | [`check`] | a table's texels against the reference | how they were computed |
+//! | [`promises`] | what a BRDF promises, and the worst input that breaks it | how it is evaluated |
 //! | [`trade`] | every method at every cost: time and error, and the front | files, devices |
 //! | [`bake`] | the order of it all: evaluate, look, check, write | how any of it is done |
 //! | [`storage`], `interpolation`, `optimise` | what rounding and bilinear look-ups cost, and the least bytes for a tolerance | devices, files |
@@ -80,6 +81,7 @@ pub mod models;
 mod optimise;
 pub mod pair;
 pub mod plan;
+pub mod promises;
 pub mod quadrature;
 pub mod quantity;
 pub mod reference;

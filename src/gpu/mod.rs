@@ -10,9 +10,11 @@ mod evaluate;
 mod measure;
 mod stage;
 mod texture;
+mod user_shader;
 
 pub use baker::{Baker, Prepared, Recorded};
 pub use compose::{Kernel, compose, validate};
 pub use device::{Adapter, Device, DeviceChoice, INSTALL, adapters};
 pub(crate) use measure::{Rates, Warm};
 pub use texture::TextureFormat;
+pub use user_shader::{UserFunction, UserShader, directions};
