@@ -90,7 +90,8 @@ pub(super) fn check(
             observer.advance(0.2 / SEEDS as f64)?;
         }
     }
-    let most = places.iter().max_by(|a, b| a.rho.certain().total_cmp(&b.rho.certain()));
+    // The first of equals.
+    let most = places.iter().rev().max_by(|a, b| a.rho.certain().total_cmp(&b.rho.certain()));
     Ok(finding(probe, most, least, tolerance))
 }
 

@@ -27,7 +27,7 @@ impl Property for Reciprocity {
     }
 
     fn say(&self, deviation: f64, _: &Probe) -> String {
-        format!("f(ωi, ωe) and f(ωe, ωi) differ by {} at most", relative(deviation))
+        format!("f(ωi, ωe) and f(ωe, ωi) {}", relative(deviation))
     }
 }
 
@@ -43,5 +43,8 @@ pub(super) fn difference(a: &[f32], b: &[f32]) -> f64 {
 }
 
 pub(super) fn relative(deviation: f64) -> String {
-    if deviation == 0.0 { "nothing, bit for bit,".into() } else { format!("{deviation:.1e} relative") }
+    match deviation {
+        0.0 => "are equal, bit for bit".into(),
+        _ => format!("differ by {deviation:.1e} relative at most"),
+    }
 }

@@ -64,7 +64,8 @@ pub(super) fn hunt(
             observer.advance((1.0 - share) / starts.len() as f64)?;
         }
     }
-    Ok(seeds.0.into_iter().max_by(|a, b| a.deviation.total_cmp(&b.deviation)))
+    // The first of equals.
+    Ok(seeds.0.into_iter().rev().max_by(|a, b| a.deviation.total_cmp(&b.deviation)))
 }
 
 /// Evaluates the orbits of some inputs at a setting and keeps the worst.

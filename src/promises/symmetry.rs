@@ -4,20 +4,24 @@ use super::probe::{Probe, is_non_finite};
 use super::reciprocity::{difference, relative};
 use super::{Angles, FLOOR, Property, Subject};
 
-/// A turn about the normal rounds both directions anew, which a narrow lobe amplifies. So two bundles of
-/// turns are compared: f over one scatters by what rounding is worth there, and only what separates the
-/// bundles is anisotropy.
+/// A turn about the normal rounds both directions anew, which a narrow lobe amplifies. So two bundles are
+/// compared, and only what separates them is anisotropy. The pairs of a bundle are turned a little against
+/// each other, so that they round differently, and displaced by more than rounding does: however the lobe
+/// amplifies it, f scatters within a bundle by more than rounding can be worth.
 pub(super) struct Isotropy {
     pub tolerance: f64,
 }
 
-/// Turns in a bundle, and how far apart, rad: enough to round anew, too little for anisotropy to show.
-const BUNDLE: usize = 4;
+/// Displacements of (θi, θe, φe) in a bundle, in units of [`ROUNDING`].
+const BUNDLE: [[f64; 3]; 5] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]];
+/// What rounding a unit vector to f32 turns it by is below 2⁻²⁴ √3 = 1.03e-7 rad; two of them.
+const ROUNDING: f64 = 2.1e-7;
+/// The turn from pair to pair of a bundle, rad: enough to round anew, too little for anisotropy to show.
 const STEP: f64 = 1.3e-4;
 /// The bundle that an input is compared with: no axis, no diagonal.
 const TURN: f64 = 0.7;
-/// Scatter of two bundles of four that is not the scatter of one distribution.
-const SCATTER: f64 = 4.0;
+/// Bundles that are apart by more of their scatter than this are not of one distribution.
+const SCATTER: f64 = 3.0;
 
 impl Property for Isotropy {
     fn name(&self) -> &'static str {
@@ -29,16 +33,27 @@ impl Property for Isotropy {
     }
 
     fn orbit(&self, input: Angles, orbit: &mut Vec<Angles>) {
-        let turned = |turn: f64| Angles { phi_i: input.phi_i + turn, phi_e: input.phi_e + turn, ..input };
-        let bundle = |from: f64| (0..BUNDLE).map(move |k| turned(from + k as f64 * STEP));
-        orbit.extend(bundle(0.0).chain(bundle(TURN - input.phi_i)));
+        // Away from the horizon, so that θ stays a zenith angle.
+        let away = |theta: f64, step: f64| if theta < 1.0 { theta + step } else { theta - step };
+        for from in [0.0, TURN - input.phi_i] {
+            for (k, steps) in BUNDLE.iter().enumerate() {
+                let turn = from + k as f64 * STEP;
+                let [i, e, across] = steps.map(|step| step * ROUNDING);
+                orbit.push(Angles {
+                    theta_i: away(input.theta_i, i),
+                    phi_i: input.phi_i + turn,
+                    theta_e: away(input.theta_e, e),
+                    phi_e: input.phi_e + turn + across,
+                });
+            }
+        }
     }
 
     fn judge(&mut self, _: &dyn Subject, _: &[f64], _: &[Angles], values: &[f32]) -> f64 {
         if values.iter().any(|&v| is_non_finite(v)) {
             return f64::NEG_INFINITY;
         }
-        let channels = values.len() / (2 * BUNDLE);
+        let channels = values.len() / (2 * BUNDLE.len());
         let (here, there) = values.split_at(values.len() / 2);
         (0..channels)
             .map(|c| {
@@ -46,7 +61,7 @@ impl Property for Isotropy {
                     let bundle = bundle.iter().skip(c).step_by(channels).map(|&v| f64::from(v));
                     let (low, high) =
                         bundle.clone().fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(v), b.max(v)));
-                    (bundle.sum::<f64>() / BUNDLE as f64, high - low)
+                    (bundle.sum::<f64>() / BUNDLE.len() as f64, high - low)
                 });
                 let size = mean.abs().max(other.abs()).max(FLOOR);
                 ((mean - other).abs() - SCATTER * (scatter + more)).max(0.0) / size
@@ -86,6 +101,6 @@ impl Property for Bilateral {
     }
 
     fn say(&self, deviation: f64, _: &Probe) -> String {
-        format!("f of a pair and of its mirror image, φ → −φ, differ by {} at most", relative(deviation))
+        format!("f of a pair and of its mirror image, φ → −φ, {}", relative(deviation))
     }
 }
