@@ -428,4 +428,8 @@ impl Subject for UserShader<'_> {
     fn symmetry(&self) -> Symmetry {
         self.symmetry
     }
+
+    fn rounding(&self) -> f64 {
+        0.5 * f64::from(f32::EPSILON)
+    }
 }
