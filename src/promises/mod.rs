@@ -174,8 +174,9 @@ pub struct Tolerances {
 impl Default for Tolerances {
     /// For f32 arithmetic in an order that nobody vouches for. An exchange of ωi and ωe, or a mirror image,
     /// is exact in f32 vectors, so what differs is rounding inside the BRDF: dot(ωi, h) against dot(ωe, h) is
-    /// worth 1e-7, which is 5e-7/(1 − ωi·h) of Schlick's power: 4e-5 where f0 = 0 (and what [`Subject::rounding`] costs a half vector). A turn rounds the directions themselves: 1e-7 in
-    /// cos θm, which a lobe of width α amplifies by α⁻², 1e-3 at α = 1e-2, where an average over the lobe
+    /// worth 1e-7, and 5e-7/(1 − ωi·h) of Schlick's power, 4e-5 measured where f0 = 0. What
+    /// [`Subject::rounding`] costs a half vector comes on top. A turn rounds the directions themselves: 1e-7
+    /// in cos θm, which a lobe of width α amplifies by α⁻², 1e-3 at α = 1e-2, where an average over the lobe
     /// keeps a tenth of it.
     fn default() -> Self {
         Self { reciprocity: 5e-5, isotropy: 1e-3, bilateral: 1e-5, agreement: 1e-5, energy: 1e-4 }
