@@ -21,6 +21,7 @@
 //! | [`gpu`] | composing, validating and recording the kernels that a plan needs | scenes, files |
 //! | [`mod@reference`] | the textbook's formulas in f64, adaptive quadrature | everything else |
 //! | [`check`] | a table's texels against the reference | how they were computed |
+//! | [`promises`] | what a BRDF promises, and the worst input that breaks it | how it is evaluated |
 //! | [`trade`] | every method at every cost: time and error, and the front | files, devices |
 //! | [`bake`] | the order of it all: evaluate, look, check, write | how any of it is done |
 //! | [`points`] | values at any list of pairs of directions, unlooked at | tables, files |
@@ -82,6 +83,7 @@ mod optimise;
 pub mod pair;
 pub mod plan;
 pub mod points;
+pub mod promises;
 pub mod quadrature;
 pub mod quantity;
 pub mod reference;

@@ -22,10 +22,11 @@ use crate::models::ALPHA_MIN_VALUE;
 use crate::pair::{Azimuth, Pair};
 use crate::plan::Lobe;
 use rayon::prelude::*;
+use serde::Serialize;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A pair of directions, both pointing away from the surface, rad.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Angles {
     /// Zenith angle of incidence, [0, π/2].
     pub theta_i: f64,

@@ -1,8 +1,10 @@
 //! The command line: parse, call, print.
 
 mod bake;
+mod check;
 mod devices;
 mod eval;
+mod junit;
 mod trade;
 mod watch;
 
@@ -25,6 +27,8 @@ enum Command {
     Bake(bake::Args),
     /// Evaluate a BRDF for one pair of directions, or a list of them
     Eval(eval::Args),
+    /// Hunt for inputs that break what a BRDF promises: finite, reciprocal, no energy gained
+    Check(check::Args),
     /// Measure time against error: every method at every cost
     Trade(trade::Args),
     /// List the devices that can bake
@@ -35,6 +39,7 @@ const AFTER_HELP: &str = "\
 Examples:
   gonio bake scene.gltf --out tables
   gonio eval --model ggx --set roughness=0.3 --theta-i 45deg --theta-e 45deg
+  gonio check --wgsl brdf.wgsl --entry brdf --set roughness=0.05..1
   gonio trade --quantity split_sum --model ggx --out trade
   gonio devices
 
@@ -52,6 +57,7 @@ pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Bake(args) => bake::run(&args),
         Command::Eval(args) => eval::run(&args),
+        Command::Check(args) => check::run(&args),
         Command::Trade(args) => trade::run(&args),
         Command::Devices(args) => devices::run(&args),
     };

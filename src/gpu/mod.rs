@@ -11,6 +11,7 @@ mod measure;
 mod points;
 mod stage;
 mod texture;
+mod user_shader;
 
 pub use baker::{Baker, Prepared, Recorded};
 pub use compose::{Kernel, compose, validate};
@@ -18,3 +19,4 @@ pub use device::{Adapter, Device, DeviceChoice, INSTALL, adapters};
 pub(crate) use measure::{Rates, Warm};
 pub(crate) use points::Points;
 pub use texture::TextureFormat;
+pub use user_shader::{UserFunction, UserShader, directions};

@@ -1,0 +1,64 @@
+//! f against the subject's independent f64 reference: largest and root mean square relative error, and ULP.
+
+use super::probe::{Probe, is_non_finite};
+use super::{Angles, Property, Subject};
+
+pub(super) struct Agreement {
+    tolerance: f64,
+    squares: f64,
+    count: u64,
+    ulp: f64,
+}
+
+impl Agreement {
+    pub fn new(tolerance: f64) -> Self {
+        Self { tolerance, squares: 0.0, count: 0, ulp: 0.0 }
+    }
+}
+
+/// Values below the smallest normal f32 have no relative precision to lose.
+const SMALLEST: f64 = f32::MIN_POSITIVE as f64;
+
+impl Property for Agreement {
+    fn name(&self) -> &'static str {
+        "agreement"
+    }
+
+    fn limit(&self) -> f64 {
+        self.tolerance
+    }
+
+    fn orbit(&self, input: Angles, orbit: &mut Vec<Angles>) {
+        orbit.push(input);
+    }
+
+    fn judge(&mut self, subject: &dyn Subject, setting: &[f64], orbit: &[Angles], values: &[f32]) -> f64 {
+        let Some(reference) = subject.reference(setting, &orbit[0]) else { return f64::NEG_INFINITY };
+        let mut worst = f64::NEG_INFINITY;
+        for (&value, exact) in values.iter().zip(reference) {
+            if is_non_finite(value) || !exact.is_finite() {
+                continue;
+            }
+            let error = (f64::from(value) - exact).abs();
+            let relative = error / exact.abs().max(SMALLEST);
+            self.squares += relative * relative;
+            self.count += 1;
+            self.ulp = self.ulp.max(error / ulp(exact));
+            worst = worst.max(relative);
+        }
+        worst
+    }
+
+    fn say(&self, deviation: f64, _: &Probe) -> String {
+        let rms = (self.squares / self.count.max(1) as f64).sqrt();
+        format!(
+            "within {deviation:.1e} relative of the f64 reference, rms {rms:.1e}, {:.1} ULP at most",
+            self.ulp
+        )
+    }
+}
+
+/// The spacing of f32 at a value.
+fn ulp(value: f64) -> f64 {
+    value.abs().max(SMALLEST).log2().floor().exp2() * f64::from(f32::EPSILON)
+}
