@@ -3,8 +3,8 @@
 // no rewrite that a driver may do can lose the specular peak.
 
 struct Pair {
-    hz2: real,    // (cos θi + cos θe)²
-    dt2: real,    // (sin θi − sin θe)²
+    hz2: real,    // ((cos θi + cos θe)/2)²
+    dt2: real,    // ((sin θi − sin θe)/2)²
     ss: real,     // sin θi sin θe
     sd: real,     // sin²((θi − θe)/2)
     mu_i: real,   // cos θi
@@ -20,17 +20,18 @@ struct Azimuth {
     bin: real,    // 1 / weight of this δφ cell where it holds δφ = 0, else 0
 }
 
+/// h = (ωi + ωe)/2, whose length is ωi·ωm.
 struct Half {
-    ht2: real,         // |ωi + ωe|², tangential part
-    h2: real,          // |ωi + ωe|² = 4 (ωi·ωm)²
+    ht2: real,         // |h|², tangential part
+    h2: real,          // |h|²
     c: real,           // ωi·ωm
     one_minus_c: real, // 1 − ωi·ωm
 }
 
 fn half_vector(p: Pair, a: Azimuth) -> Half {
-    let ht2 = p.dt2 + 4.0 * p.ss * a.sin2;
+    let ht2 = p.dt2 + p.ss * a.sin2;
     let h2 = ht2 + p.hz2;
     // |ωi − ωe|²/4 = 1 − (ωi·ωm)² = sin²((θi − θe)/2) + sin θi sin θe cos²(δ/2)
-    let c = 0.5 * sqrt(h2);
+    let c = sqrt(h2);
     return Half(ht2, h2, c, (p.sd + p.ss * a.cos2) / (1.0 + c));
 }

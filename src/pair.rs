@@ -11,9 +11,9 @@ pub const MU_MIN: f64 = 1.0 / (1 << 24) as f64;
 /// What depends on θi and θe alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pair {
-    /// (cos θi + cos θe)²
+    /// ((cos θi + cos θe)/2)²
     pub hz2: f64,
-    /// (sin θi − sin θe)²
+    /// ((sin θi − sin θe)/2)²
     pub dt2: f64,
     /// sin θi sin θe
     pub ss: f64,
@@ -40,7 +40,7 @@ pub struct Azimuth {
     pub bin: f64,
 }
 
-/// What depends on all three: |ωi + ωe|² and 1 − ωi·ωm.
+/// What depends on all three: of h = (ωi + ωe)/2, |h|² and its tangential part; ωi·ωm = |h|, and 1 − ωi·ωm.
 pub(crate) struct Half {
     pub ht2: f64,
     pub h2: f64,
@@ -53,8 +53,8 @@ impl Pair {
     pub fn new(theta_i: f64, theta_e: f64) -> Self {
         let (theta_i, theta_e) = (off_horizon(theta_i), off_horizon(theta_e));
         let (half_sum, half_difference) = (0.5 * (theta_i + theta_e), 0.5 * (theta_i - theta_e));
-        let hz = theta_i.cos() + theta_e.cos();
-        let dt = 2.0 * half_sum.cos() * half_difference.sin();
+        let hz = 0.5 * (theta_i.cos() + theta_e.cos());
+        let dt = half_sum.cos() * half_difference.sin();
         Self {
             hz2: hz * hz,
             dt2: dt * dt,
@@ -89,9 +89,9 @@ impl Azimuth {
 
 impl Half {
     pub(crate) fn new(p: &Pair, a: &Azimuth) -> Self {
-        let ht2 = p.dt2 + 4.0 * p.ss * a.sin2;
+        let ht2 = p.dt2 + p.ss * a.sin2;
         let h2 = ht2 + p.hz2;
-        let c = 0.5 * h2.sqrt();
+        let c = h2.sqrt();
         Self { ht2, h2, c, one_minus_c: (p.sd + p.ss * a.cos2) / (1.0 + c) }
     }
 }

@@ -2,7 +2,7 @@
 // (A, B) become channels. Binding 0 is the job, 1 the result; what a kernel reads follows.
 
 struct Job {
-    weights: array<vec4f, 3>, // channel c = dot(weights[c].xy + weights[c].zw, (A, B)): the latter is what f32 drops
+    weights: array<vec4f, 3>, // for each channel two, and what f32 drops of them
     first: u32,               // first invocation of this dispatch
     end: u32,                 // one past its last
     base: u32,                // the result that is the first of the output buffer; of points, where theirs begin
@@ -17,7 +17,22 @@ const INV_PI: real = 0.3183098861837907;
 
 @group(0) @binding(0) var<uniform> job: Job;
 
-fn channel(c: u32, ab: real2) -> real {
-    let weight = real2(job.weights[c].xy) + real2(job.weights[c].zw);
+/// What the channels weigh (A, B) with.
+struct Weights {
+    r: real2,
+    g: real2,
+    b: real2,
+}
+
+fn weights() -> Weights {
+    let w = job.weights;
+    return Weights(
+        real2(w[0].xy) + real2(w[0].zw),
+        real2(w[1].xy) + real2(w[1].zw),
+        real2(w[2].xy) + real2(w[2].zw),
+    );
+}
+
+fn channel(weight: real2, ab: real2) -> real {
     return weight.x * ab.x + weight.y * ab.y;
 }

@@ -22,5 +22,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let point = min(id.x, job.end - 1u);
     let p = points[point];
     let pair = Pair(p.hz2, p.dt2, p.ss, p.sd, p.mu_i, p.mu_e, 0.0, 0.0);
-    write(job.base + point, lobe(pair, Azimuth(p.sin2, p.cos2, 0.0, 0.0), job.alpha));
+    let azimuth = Azimuth(p.sin2, p.cos2, 0.0, 0.0);
+    write(job.base + point, lobe(pair, azimuth, job.alpha, lobe_row(pair, job.alpha)));
 }

@@ -14,12 +14,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let invocation = min(job.first + id.x, job.end - 1u);
     let pair = pairs[invocation % job.columns];
     let alpha = alphas[invocation / job.columns];
+    let row = lobe_row(pair, alpha);
     var sum = real2();
     for (var block = 0u; block < job.azimuths; block += BLOCK) {
         var inner = real2();
         for (var k = block; k < min(block + BLOCK, job.azimuths); k++) {
             let azimuth = azimuths[k];
-            inner += azimuth.weight * lobe(pair, azimuth, alpha);
+            inner += azimuth.weight * lobe(pair, azimuth, alpha, row);
         }
         sum += inner;
     }

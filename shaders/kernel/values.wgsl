@@ -1,32 +1,61 @@
-// Values of a BRDF over (roughness, θi, θe, δφ): four azimuths an invocation, no trigonometry, wide
-// stores. Rows are padded to whole quads. A workgroup stays in one row, which software drivers then read once
-// for all their lanes; the quads of a dispatch are a window that fits a uniform buffer, which they read at
-// half the price of storage.
+// Values of a BRDF over (roughness, θi, θe, δφ): no trigonometry, wide stores. Rows are padded to whole quads
+// of azimuths. An invocation takes four rows and of their quads every eighth. It reads rows, weights and
+// counts once and first: after a store, software drivers read whatever it was again. The quads of a dispatch
+// are a window that fits a uniform buffer, which they read at half the price of storage.
 
 struct Quad {
     sin2: real4, // sin²(δ/2)
     cos2: real4, // cos²(δ/2)
 }
 
+/// A row, and where it is stored.
+struct Row {
+    pair: Pair,
+    lobe: real,
+    first: u32,
+    is_there: bool,
+}
+
 @group(0) @binding(1) var<storage, read_write> values: array<vec4f>;
 @group(0) @binding(2) var<storage, read> rows: array<Pair>;
 @group(0) @binding(3) var<uniform> quads: array<Quad, WINDOW>;
 
-@compute @workgroup_size(64)
+const LANES = 8u;
+
+@compute @workgroup_size(LANES, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    if ADD && id.x >= job.columns {
+    let first = job.first + 4u * id.y;
+    let row0 = row_at(first);
+    let row1 = row_at(first + 1u);
+    let row2 = row_at(first + 2u);
+    let row3 = row_at(first + 3u);
+    let w = weights();
+    let columns = job.columns;
+    for (var quad = id.x; quad < columns; quad += LANES) {
+        let z = quads[quad];
+        evaluate(row0, quad, z, w);
+        evaluate(row1, quad, z, w);
+        evaluate(row2, quad, z, w);
+        evaluate(row3, quad, z, w);
+    }
+}
+
+/// What is beyond the end does the last one over again: cheaper than a mask on every store.
+fn row_at(row: u32) -> Row {
+    let there = min(row, job.end - 1u);
+    let pair = rows[there];
+    return Row(pair, lobe_row(pair, pair.alpha), (there * job.azimuths + job.nodes) * CHANNELS, there == row);
+}
+
+fn evaluate(row: Row, quad: u32, z: Quad, w: Weights) {
+    if ADD && !row.is_there {
         return;
     }
-    // What is beyond the end does the last one over again: cheaper than a mask on every store.
-    let quad = min(id.x, job.columns - 1u);
-    let row = job.first + id.y;
-    let pair = rows[row];
-    let z = quads[quad];
-    let a0 = lobe(pair, Azimuth(z.sin2.x, z.cos2.x, 0.0, 0.0), pair.alpha);
-    let a1 = lobe(pair, Azimuth(z.sin2.y, z.cos2.y, 0.0, 0.0), pair.alpha);
-    let a2 = lobe(pair, Azimuth(z.sin2.z, z.cos2.z, 0.0, 0.0), pair.alpha);
-    let a3 = lobe(pair, Azimuth(z.sin2.w, z.cos2.w, 0.0, 0.0), pair.alpha);
-    store((row * job.azimuths + job.nodes + quad) * CHANNELS, a0, a1, a2, a3);
+    let a0 = lobe(row.pair, Azimuth(z.sin2.x, z.cos2.x, 0.0, 0.0), row.pair.alpha, row.lobe);
+    let a1 = lobe(row.pair, Azimuth(z.sin2.y, z.cos2.y, 0.0, 0.0), row.pair.alpha, row.lobe);
+    let a2 = lobe(row.pair, Azimuth(z.sin2.z, z.cos2.z, 0.0, 0.0), row.pair.alpha, row.lobe);
+    let a3 = lobe(row.pair, Azimuth(z.sin2.w, z.cos2.w, 0.0, 0.0), row.pair.alpha, row.lobe);
+    store(row.first + quad * CHANNELS, w, a0, a1, a2, a3);
 }
 
 fn put(at: u32, v: vec4f) {

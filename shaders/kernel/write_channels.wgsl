@@ -4,12 +4,13 @@
 @group(0) @binding(1) var<storage, read_write> values: array<real>;
 
 fn write(texel: u32, ab: real2) {
-    put(texel * CHANNELS, channel(0u, ab));
+    let w = weights();
+    put(texel * CHANNELS, channel(w.r, ab));
     if CHANNELS > 1u {
-        put(texel * CHANNELS + 1u, channel(1u, ab));
+        put(texel * CHANNELS + 1u, channel(w.g, ab));
     }
     if CHANNELS > 2u {
-        put(texel * CHANNELS + 2u, channel(2u, ab));
+        put(texel * CHANNELS + 2u, channel(w.b, ab));
     }
 }
 

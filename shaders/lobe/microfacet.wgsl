@@ -1,8 +1,13 @@
 // A microfacet lobe: Torrance & Sparrow 1967; Walter et al. 2007, eq. 20: f = F D G2 / (4 μi μe).
 
-fn lobe(p: Pair, a: Azimuth, alpha: real) -> real2 {
+fn lobe(p: Pair, a: Azimuth, alpha: real, row: real) -> real2 {
     let h = half_vector(p, a);
-    return fresnel(h.c, h.one_minus_c) * (ndf(h, p.hz2, alpha) * visibility(p.mu_i, p.mu_e, alpha));
+    return fresnel(h.c, h.one_minus_c) * (ndf(h, p.hz2, alpha) * row);
+}
+
+/// What all azimuths share.
+fn lobe_row(p: Pair, alpha: real) -> real {
+    return visibility(p.mu_i, p.mu_e, alpha);
 }
 
 /// α → 0 at fixed μ: the ideal mirror's.

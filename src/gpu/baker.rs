@@ -86,8 +86,6 @@ const INVOCATIONS_PER_DISPATCH: usize = 1 << 21;
 /// Bytes of a tile's result, and of the raw integrals behind it.
 const TILE_BYTES: usize = 1 << 25;
 const WORKGROUP: usize = 64;
-/// Workgroups along a dimension: the least that a device allows.
-const ROWS_PER_DISPATCH: usize = 65_535;
 
 impl Layout {
     pub fn new(table: &TablePlan, precision: Precision) -> Self {
@@ -291,12 +289,12 @@ impl Baker {
             let columns = VALUE_WINDOW.min(stage.per_unit - quad);
             let (offset, size) = (quad as u64 * 32, std::num::NonZeroU64::new(BYTES));
             let window = wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: quads, offset, size });
-            let rows_per_step =
-                (EVALUATIONS_PER_DISPATCH / (columns * stage.cost)).clamp(1, ROWS_PER_DISPATCH);
+            let rows_per_step = (EVALUATIONS_PER_DISPATCH / (columns * stage.cost)).max(1);
             for row in (0..units.len()).step_by(rows_per_step) {
                 let rows_here = rows_per_step.min(units.len() - row);
                 let job = Job {
                     first: count(row)?,
+                    end: count(row + rows_here)?,
                     columns: count(columns)?,
                     azimuths: count(stage.per_unit)?,
                     nodes: count(quad)?,
@@ -312,7 +310,7 @@ impl Baker {
                 steps.push(Step {
                     pipeline: pipeline.clone(),
                     bind_group: self.bind(pipeline, resources),
-                    workgroups: [count(columns.div_ceil(WORKGROUP))?, count(rows_here)?],
+                    workgroups: [1, count(rows_here.div_ceil(4 * 8))?],
                     evaluations: (columns * rows_here * stage.cost) as u64,
                 });
             }
