@@ -4,8 +4,8 @@ pub(crate) mod none;
 pub(crate) mod smith_correlated;
 pub(crate) mod smith_separable;
 
-use super::Term;
 use super::ndf::Ndf;
+use super::{SlopeCounts, Term};
 use crate::reference;
 
 /// G2 of the normals of `N`.
@@ -14,6 +14,11 @@ pub(crate) trait Masking {
     const REFERENCE: &'static dyn reference::Masking;
     /// Why ρ has no bound, if it has none.
     const UNBOUNDED: Option<&'static str> = None;
+
+    /// What it takes where cos φ > 0, the side on which the horizon turns, and correlated Smith takes so much.
+    fn near(correlated: SlopeCounts) -> SlopeCounts {
+        correlated
+    }
 
     /// G2 / (4 μi μe)
     fn visibility<N: Ndf>(mu_i: f64, mu_e: f64, alpha: f64) -> f64;

@@ -3,7 +3,7 @@
 
 use super::Masking;
 use crate::models::ndf::Ndf;
-use crate::models::{Term, part};
+use crate::models::{SlopeCounts, Term, part};
 use crate::reference;
 
 pub(crate) struct SmithSeparable;
@@ -16,6 +16,15 @@ impl Masking for SmithSeparable {
         part: part!("masking/smith_separable"),
     };
     const REFERENCE: &'static dyn reference::Masking = &reference::SmithSeparable;
+
+    /// A quarter more: for μ ≪ α its G2 bends where G1(ωi) does, which correlated heights wash out by Λ(ωe).
+    /// Measured: an eighth leaves 1.1 times 1e-6. In fours, so that few rules differ.
+    fn near(SlopeCounts { azimuths, nodes }: SlopeCounts) -> SlopeCounts {
+        SlopeCounts {
+            azimuths: azimuths + azimuths.div_ceil(4),
+            nodes: (nodes + nodes.div_ceil(4)).next_multiple_of(4),
+        }
+    }
 
     fn visibility<N: Ndf>(mu_i: f64, mu_e: f64, alpha: f64) -> f64 {
         1.0 / ((mu_i + N::smith_root(mu_i, alpha)) * (mu_e + N::smith_root(mu_e, alpha)))
