@@ -231,6 +231,9 @@ impl TablePlan {
             if value && model.is_delta() {
                 return refuse(format!("{} is a delta and has no values; tabulate rho_dh", model.name));
             }
+            if let (false, Integral::Unbounded(why)) = (value, model.integral) {
+                return refuse(format!("{} has no {}: {why}; tabulate brdf", model.name, self.quantity.name));
+            }
             let Some(low) = alphas.iter().copied().reduce(f64::min).filter(|_| model.has_roughness) else {
                 continue;
             };
@@ -304,6 +307,7 @@ impl TablePlan {
                 Integral::Slopes(_) => true,
                 Integral::Smooth(_) => self.rule.samples().is_none(),
                 Integral::Delta(_) => matches!(self.rule, Rule::Warped | Rule::Grid { .. }),
+                Integral::Unbounded(_) => self.quantity.evaluation == Evaluation::Value,
             };
             if !fits {
                 let what = if model.is_delta() { "a delta" } else { "no microfacet lobe" };

@@ -145,6 +145,11 @@ fn integrals(table: &TablePlan, lobe: &Lobe, thetas: &[f64], weights: &[f64]) ->
             inner: Inner::Analytic { directional, mus: thetas.iter().map(|theta| theta.cos()).collect() },
             outer: weights.to_vec(),
         },
+        // The plan refuses it; were it to come here, no number would.
+        (_, Integral::Unbounded(_)) => WorkKind::Integrals {
+            inner: Inner::Analytic { directional: |_, _| [f64::NAN; 2], mus: mus() },
+            outer: weights.to_vec(),
+        },
     }
 }
 

@@ -440,3 +440,47 @@ fn one_pair_is_taken_apart() {
     assert!(one(&["--phi-i=0.3"]).contains("δφ = 0 rad"));
     assert!(one(&["--phi-e=3.141593"]).contains("δφ = 0.000000346"), "what is not 0 is shown");
 }
+
+/// Terms of a microfacet model by the words of recipes. By hand, retro-reflection at normal incidence with
+/// α = 0.1: f = D/4, D = 1/(πα²), as G2 = F = 1.
+#[test]
+fn the_terms_of_a_model_are_chosen_by_name() {
+    let straight = ["--set=alpha=0.1", "--theta-i=0", "--theta-e=0", "--device=cpu", "--json"];
+    let terms = ["--model=ggx", "--set=masking=smith-separable", "--set=fresnel=none"];
+    let output = gonio(&[&terms[..], &straight].concat());
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let value = json["value"][0].as_f64().unwrap();
+    assert!((value * 4.0 * PI * 0.01 - 1.0).abs() < 1e-6, "{value}");
+    assert_eq!(json["subject"], "ggx-smith-separable-none");
+    for (set, words) in [
+        ("--set=masking=smith", "smith-correlated, smith-separable, none"),
+        ("--set=fresnel=exact", "schlick, none"),
+        ("--set=masking=2", "a text in quotes"),
+    ] {
+        let output = gonio(&[&["--model=ggx", set], &straight[..]].concat());
+        assert_eq!(output.status.code(), Some(2));
+        assert!(error(&output).contains(words), "{}", error(&output));
+    }
+    let output = gonio(&[&["--model=ggx", "--set=fresnel=none", "--set=f90=1"], &straight[..]].concat());
+    assert!(error(&output).contains("f90: unknown key"), "{}", error(&output));
+    let output =
+        gonio(&[&["--model=lambert", "--set=albedo=1", "--set=masking=none"], &straight[..]].concat());
+    assert!(error(&output).contains("masking"), "{}", error(&output));
+}
+
+/// The list names what recipes can say, and each model of it has a page.
+#[test]
+fn models_are_listed_and_described() {
+    let models = |more: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_gonio")).arg("models").args(more).output().unwrap();
+        (output.status.code(), String::from_utf8(output.stdout).unwrap())
+    };
+    let (_, list) = models(&[]);
+    for model in gonio::models::all() {
+        let (code, page) = models(&[model.name]);
+        assert!(code == Some(0) && page.contains(model.source), "{page}");
+        assert!(model.components.iter().all(|component| page.contains(component.weight)), "{page}");
+    }
+    assert!(["ggx", "mirror", "smith-separable", "schlick"].iter().all(|word| list.contains(word)), "{list}");
+    assert_eq!(models(&["phong"]).0, Some(2));
+}

@@ -23,7 +23,7 @@ pub struct Args {
     /// A material of the scene
     #[arg(long, value_name = "NAME", requires = "scene")]
     material: Option<String>,
-    /// A model: lambert, gltf_diffuse or ggx
+    /// A model; gonio models lists them
     #[arg(long, value_name = "NAME", required_unless_present = "scene")]
     model: Option<String>,
     /// A parameter of the model, by its name in recipes; repeat for more
@@ -63,6 +63,7 @@ const AFTER_HELP: &str = "\
 Examples:
   gonio eval --model ggx --set roughness=0.3 --theta-i 45deg --theta-e 45deg
   gonio eval --model ggx --set alpha=0.1 --set f0=[1,0.78,0.34] --theta-i 0.5 --theta-e 0.5 --phi-e 3
+  gonio eval --model ggx --set alpha=0.1 --set masking=smith-separable --set fresnel=none --theta-i 0.5 --theta-e 0.5
   gonio eval recipe.toml --material gold --theta-i 30deg --theta-e 60deg
   gonio eval recipe.toml --material gold --pairs pairs.npy --out values.npy
 
@@ -113,14 +114,25 @@ fn subject(args: &Args, angles: &Angles) -> Result<TablePlan> {
                 let (key, value) = set.split_once('=').ok_or_else(|| {
                     Error::input(format!("--set {set}: give KEY=VALUE, as in --set roughness=0.3"))
                 })?;
-                lobe += &format!(", {key} = {value}");
+                lobe += &format!(", {key} = {}", toml(value));
             }
             let text = format!("[materials.{model}]\nlobes = [{{ {lobe} }}]\n");
-            (scene::parse_recipe("--set".as_ref(), text.as_bytes())?, model.to_owned())
+            let mut scene = scene::parse_recipe("--set".as_ref(), text.as_bytes())?;
+            // By the name that tells the terms.
+            let name = scene.materials[0].lobes[0].model.clone();
+            scene.materials[0].name.clone_from(&name);
+            (scene, name)
         }
         _ => return Err(Error::input("give --model NAME, or a SCENE and --material NAME")),
     };
     TablePlan::material("eval", &BRDF, &scene, &name, axes)
+}
+
+/// A value as TOML: a word needs no quotes on a command line.
+fn toml(value: &str) -> String {
+    let is_word = value.starts_with(|c: char| c.is_ascii_alphabetic())
+        && value.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_');
+    if is_word { format!("\"{value}\"") } else { value.to_owned() }
 }
 
 /// Whether a value keeps what every BRDF promises.

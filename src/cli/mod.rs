@@ -5,6 +5,7 @@ mod check;
 mod devices;
 mod eval;
 mod junit;
+mod models;
 mod trade;
 mod watch;
 
@@ -31,6 +32,8 @@ enum Command {
     Check(check::Args),
     /// Measure time against error: every method at every cost
     Trade(trade::Args),
+    /// List the models and the parts that they are made of, or one in detail
+    Models(models::Args),
     /// List the devices that can bake
     Devices(devices::Args),
 }
@@ -41,6 +44,7 @@ Examples:
   gonio eval --model ggx --set roughness=0.3 --theta-i 45deg --theta-e 45deg
   gonio check --wgsl brdf.wgsl --entry brdf --set roughness=0.05..1
   gonio trade --quantity split_sum --model ggx --out trade
+  gonio models ggx
   gonio devices
 
 Exit codes: 0 success, 1 a promise is not met, 2 bad input, 3 no device, 70 internal error, 130 interrupted";
@@ -59,6 +63,7 @@ pub fn main() -> ExitCode {
         Command::Eval(args) => eval::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Trade(args) => trade::run(&args),
+        Command::Models(args) => models::run(&args),
         Command::Devices(args) => devices::run(&args),
     };
     match result {

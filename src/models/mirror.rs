@@ -8,6 +8,7 @@ pub(crate) static MODEL: Model = Model {
     name: "mirror",
     summary: "the ideal mirror, a delta, with Schlick's Fresnel: no values, integrals in closed form",
     source: "f = F δ(θi − θe) δ(φi + π − φe) / (cos θi sin θi)",
+    microfacet: None,
     components: &Component::schlick(1.0),
     has_roughness: false,
     rho_bound: 1.0,

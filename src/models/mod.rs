@@ -6,10 +6,12 @@
 
 mod diffuse;
 mod fresnel;
-mod ggx;
 mod masking;
+mod microfacet;
 mod mirror;
 mod ndf;
+
+pub use microfacet::{FRESNELS, MASKINGS, MICROFACETS, Microfacet};
 
 use crate::error::{Error, Result};
 use crate::pair::{Azimuth, Pair};
@@ -24,11 +26,14 @@ pub struct Model {
     pub summary: &'static str,
     /// Author, year, equation.
     pub source: &'static str,
+    /// What it is made of, if it is a microfacet model: then it has siblings of other terms.
+    pub microfacet: Option<&'static Microfacet>,
     /// Its components: `A` alone, or `A` and `B` where Fresnel splits it.
     pub components: &'static [Component],
     /// Whether it takes a roughness (α = roughness²).
     pub has_roughness: bool,
-    /// The bound on ρ_dh = ∫ (A + B) cos θ dω that the model promises; 1 conserves energy.
+    /// The bound on ρ_dh = ∫ (A + B) cos θ dω that the model promises; 1 conserves energy, and
+    /// infinity is no promise.
     pub rho_bound: f64,
     /// Its shader, part by part, in order.
     pub parts: &'static [Part],
@@ -52,6 +57,19 @@ pub struct Component {
     pub default: Option<f64>,
 }
 
+/// A part that recipes choose by its name.
+#[derive(Debug)]
+pub struct Term {
+    /// The name in recipes.
+    pub name: &'static str,
+    /// A few words for people.
+    pub summary: &'static str,
+    /// Author, year, equation.
+    pub source: &'static str,
+    /// Its shader.
+    pub part: Part,
+}
+
 /// A file of WGSL.
 #[derive(Debug)]
 pub struct Part {
@@ -71,6 +89,9 @@ pub enum Integral {
     Smooth(fn(tolerance: f64) -> [usize; 2]),
     /// In closed form: (A, B) of ρ(μ). Such a model is a delta and has no values.
     Delta(fn(mu: f64, alpha: f64) -> [f64; 2]),
+    /// Not at all, and why: ρ has no bound, so that no absolute tolerance holds. Such a model has values
+    /// alone.
+    Unbounded(&'static str),
 }
 
 /// How a lobe is integrated in slopes.
@@ -123,9 +144,10 @@ pub const ALPHA_MIN_VALUE: f64 = 1e-6;
 /// (α/μ)² = 2e-10.
 pub const ALPHA_MIN_INTEGRAL: f64 = 1e-12;
 
-/// The registry.
+/// The models by the names that recipes begin from; [`MICROFACETS`] has the siblings of those that are made
+/// of terms.
 pub static MODELS: [&Model; 4] =
-    [&diffuse::lambert::MODEL, &diffuse::gltf_diffuse::MODEL, &ggx::MODEL, &mirror::MODEL];
+    [&diffuse::lambert::MODEL, &diffuse::gltf_diffuse::MODEL, &microfacet::GGX, &mirror::MODEL];
 
 /// The finest tolerance that the tables of node counts know.
 pub(crate) const FINEST: f64 = 1e-10;
@@ -142,12 +164,18 @@ pub(crate) fn is_fine(tolerance: f64) -> bool {
     tolerance < 0.9e-6
 }
 
-/// The model of this name.
+/// The model of this name, a microfacet model's with its terms included: `ggx-smith-separable-none`.
 pub fn find(name: &str) -> Result<&'static Model> {
-    MODELS.into_iter().find(|m| m.name == name).ok_or_else(|| {
+    all().find(|m| m.name == name).ok_or_else(|| {
         let names: Vec<_> = MODELS.iter().map(|m| m.name).collect();
         Error::input(format!("no model \"{name}\"; there are {}", names.join(", ")))
     })
+}
+
+/// Every model: [`MODELS`], and then those microfacet models that are not among them.
+pub fn all() -> impl Iterator<Item = &'static Model> {
+    let siblings = MICROFACETS.iter().filter(|model| !MODELS.contains(model));
+    MODELS.into_iter().chain(siblings)
 }
 
 impl Slopes {

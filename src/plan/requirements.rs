@@ -3,7 +3,7 @@
 use super::{DEFAULT_TOLERANCE, Lobe, Rule, TablePlan};
 use crate::axis::{Axis, Mapping, Positions, Variable};
 use crate::error::{Error, Result};
-use crate::models::{self, ALPHA_MIN_VALUE, MODELS, Model};
+use crate::models::{self, ALPHA_MIN_VALUE, Integral, MODELS, Model};
 use crate::optimise::optimise;
 use crate::quantity::{self, BRDF, Evaluation, QUANTITIES, Quantity, RHO_DH};
 use crate::scene::{Distribution, LeftOut, Material, Scene, SubjectRequest, TableRequest, Weights};
@@ -162,7 +162,7 @@ impl Plan {
     /// The default set: for each basis in use its split sum, ρ_dh and ρ_hh over the roughness that
     /// occurs and its values at the range's ends and quartiles; RGB tables of constant materials.
     fn require_defaults(&mut self, materials: &[&Material], tolerance: f64) -> Result<()> {
-        for model in MODELS {
+        for model in models::all() {
             let lobes = || materials.iter().flat_map(|m| &m.lobes).filter(|lobe| lobe.model == model.name);
             if lobes().next().is_none() {
                 continue;
@@ -194,6 +194,10 @@ impl Plan {
                     self.leave_out(what, "a lobe of it is a delta and has no values");
                     continue;
                 }
+                if let Some(why) = lobes.iter().find_map(|lobe| no_table(lobe.model, quantity)) {
+                    self.leave_out(what, why);
+                    continue;
+                }
                 let axes = natural_axes(quantity)?;
                 self.tables.push(
                     material_table(what, quantity, material, lobes.clone(), axes)?.with_tolerance(tolerance),
@@ -214,6 +218,10 @@ impl Plan {
         let value = quantity.evaluation == Evaluation::Value;
         if value && model.is_delta() {
             self.leave_out(format!("{subject}.{}", quantity.name), "a delta has no values");
+            return Ok(None);
+        }
+        if let Some(why) = no_table(model, quantity) {
+            self.leave_out(format!("{subject}.{}", quantity.name), why);
             return Ok(None);
         }
         let mut axes = Vec::new();
@@ -271,7 +279,8 @@ impl Plan {
                     Weights::Constant(weights) => weights.as_flattened().iter().copied().fold(0.0, f64::max),
                     Weights::Textured(_) => 1.0,
                 };
-                plan.rho_bound += largest * model.rho_bound;
+                // Nothing of what is unbounded is nothing.
+                plan.rho_bound += if largest > 0.0 { largest * model.rho_bound } else { 0.0 };
             }
             let serves = |t: &&TablePlan| match t.is_basis() {
                 true => material.lobes.iter().any(|lobe| lobe.model == t.subject),
@@ -296,6 +305,14 @@ impl Plan {
 
     fn leave_out(&mut self, what: impl Into<String>, why: impl Into<String>) {
         self.left_out.push(LeftOut { what: what.into(), why: why.into() });
+    }
+}
+
+/// Why a model has no integrals, if it has none and this is one.
+fn no_table(model: &Model, quantity: &Quantity) -> Option<&'static str> {
+    match model.integral {
+        Integral::Unbounded(why) if quantity.evaluation != Evaluation::Value => Some(why),
+        _ => None,
     }
 }
 

@@ -1,32 +1,32 @@
-//! Microfacet models: any distribution with any masking, under Schlick's Fresnel term.
+//! Microfacet models: any distribution with any masking, under any Fresnel term.
 
 use super::directions::{MIN_MU, Pair, sin_of};
-use super::masking::{Masking, smith::Smith};
+use super::fresnel::{Fresnel, schlick::Schlick};
+use super::masking::{Masking, smith_correlated::SmithCorrelated};
 use super::ndf::{Ndf, ggx::Ggx};
 use super::quadrature::{even_breaks, integrate};
-use super::{Angles, Factors, Reference, definition, fresnel::schlick, mirror::MIRROR};
+use super::{Angles, Factors, Reference, definition};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
 /// GGX with height-correlated Smith masking: A = S (1 − Fc), B = S Fc, S = D G2 / (4 μi μe), and
 /// Fc = (1 − ωi·ωm)⁵ (Walter et al. 2007, eq. 20; Heitz 2014, eq. 99; Schlick 1994, eq. 15).
-///
-/// At α = 0 it is the [`MIRROR`].
-pub static GGX: &dyn Reference = &Microfacet { ndf: Ggx, masking: Smith };
+pub static GGX: &dyn Reference = &Microfacet { ndf: &Ggx, masking: &SmithCorrelated, fresnel: &Schlick };
 
-/// A rough surface of perfect mirrors.
-struct Microfacet<N, M> {
-    ndf: N,
-    masking: M,
+/// A rough surface of small mirrors. At α = 0 it is one ideal mirror.
+pub(crate) struct Microfacet {
+    pub ndf: &'static dyn Ndf,
+    pub masking: &'static dyn Masking,
+    pub fresnel: &'static dyn Fresnel,
 }
 
-impl<N: Ndf, M: Masking> Reference for Microfacet<N, M> {
+impl Reference for Microfacet {
     /// Walter et al. 2007, eq. 20: f = F D G2 / (4 μi μe).
     fn brdf(&self, angles: &Angles, alpha: f64) -> Option<[f64; 2]> {
         let pair = Pair::new(angles);
         let Factors { d, g2, .. } = self.factors_of(&pair, alpha)?;
         let s = d * g2 / (4.0 * pair.mu_i * pair.mu_e);
-        Some(schlick::weights(pair.cos_d, pair.one_minus_cos_d).map(|weight| s * weight))
+        Some(self.fresnel.weights(pair.cos_d, pair.one_minus_cos_d).map(|weight| s * weight))
     }
 
     fn rho_dh(&self, mu: f64, alpha: f64) -> [f64; 2] {
@@ -36,7 +36,7 @@ impl<N: Ndf, M: Masking> Reference for Microfacet<N, M> {
     /// As the mean weighs ρ with 2μ, ρ may be the coarser the smaller μ is.
     fn rho_hh(&self, alpha: f64) -> [f64; 2] {
         if alpha == 0.0 {
-            return MIRROR.rho_hh(alpha);
+            return self.fresnel.mean();
         }
         definition::rho_hh(|mu| self.rho_dh_within(TOLERANCE / mu, mu, alpha), alpha)
     }
@@ -55,13 +55,13 @@ const FINER: f64 = 0.1;
 /// In u and in v the integrands vary on the scale 1. Longer intervals can look converged by luck.
 const PANEL: f64 = 3.0;
 
-impl<N: Ndf, M: Masking> Microfacet<N, M> {
+impl Microfacet {
     /// As dωi = 4 (ωe·ωm) dωm (Walter et al. 2007, eq. 14), ρ = ∫ F D G2 (ωe·ωm) / μe dωm over the normals
     /// that reflect ωe above the horizon.
     fn rho_dh_within(&self, tolerance: f64, mu: f64, alpha: f64) -> [f64; 2] {
         let mu = mu.clamp(MIN_MU, 1.0);
         if alpha == 0.0 {
-            return MIRROR.rho_dh(mu, alpha);
+            return self.fresnel.weights(mu, 1.0 - mu);
         }
         // With ωe at azimuth 0, the horizon falls from tan θm ~ 2/μ to ~ μ/2 as φ passes π/2, on the scale μ:
         // φ = π/2 + μ sinh u. The other half of the normals, beyond φ = π, mirrors this one.
@@ -81,7 +81,7 @@ impl<N: Ndf, M: Masking> Microfacet<N, M> {
         Some(Factors {
             d: self.ndf.d(pair.cos2_m, pair.tan2_m, alpha),
             g2: self.masking.g2(lambda_i, lambda_e),
-            fc: schlick::fc(pair.one_minus_cos_d),
+            fc: self.fresnel.weights(pair.cos_d, pair.one_minus_cos_d)[1],
         })
     }
 
@@ -119,7 +119,7 @@ impl<N: Ndf, M: Masking> Microfacet<N, M> {
             // dωm = sin θm dθm dφ, dθm = cos²θm α cosh v dv.
             let solid_angle = sin_m * cos_m * cos_m * alpha * (1.0 + sinh * sinh).sqrt();
             let value = d * g2 * cos_d / mu * solid_angle * weight;
-            schlick::weights(cos_d, 1.0 - cos_d).map(|fresnel| value * fresnel)
+            self.fresnel.weights(cos_d, 1.0 - cos_d).map(|fresnel| value * fresnel)
         };
         let horizon = (tan_horizon(mu, cos_phi) / alpha).asinh();
         integrate(integrand, &even_breaks(0.0, horizon, PANEL), tolerance).value_or_nan()

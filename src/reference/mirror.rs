@@ -1,6 +1,7 @@
 //! The ideal mirror: the limit of every microfacet model as α → 0.
 
-use super::{Angles, Reference, fresnel::schlick};
+use super::fresnel::{Fresnel, schlick::Schlick};
+use super::{Angles, Reference};
 
 /// f = F δ(θi − θe) δ(δφ) / (cos θi sin θi) with Schlick's F: A = 1 − Fc and B = Fc under the delta.
 pub static MIRROR: &dyn Reference = &Mirror;
@@ -16,11 +17,10 @@ impl Reference for Mirror {
     /// ωm = n: ρ_dh = F(μ).
     fn rho_dh(&self, mu: f64, _alpha: f64) -> [f64; 2] {
         let mu = mu.clamp(0.0, 1.0);
-        schlick::weights(mu, 1.0 - mu)
+        Schlick.weights(mu, 1.0 - mu)
     }
 
-    /// 2 ∫ (1 − μ)⁵ μ dμ = 1/21.
     fn rho_hh(&self, _alpha: f64) -> [f64; 2] {
-        [20.0 / 21.0, 1.0 / 21.0]
+        Schlick.mean()
     }
 }

@@ -22,8 +22,14 @@ mod tests;
 
 pub use diffuse::{gltf::GLTF_DIFFUSE, lambert::LAMBERT};
 pub use directions::{Angles, MIN_MU};
+pub(crate) use fresnel::{Fresnel, none::Constant, schlick::Schlick};
+pub(crate) use masking::{
+    Masking, none::Unmasked, smith_correlated::SmithCorrelated, smith_separable::SmithSeparable,
+};
 pub use microfacet::GGX;
+pub(crate) use microfacet::Microfacet;
 pub use mirror::MIRROR;
+pub(crate) use ndf::{Ndf, ggx::Ggx};
 
 /// The f64 reference of a model.
 ///

@@ -2,7 +2,10 @@
 
 use super::definition;
 use super::quadrature::integrate;
-use super::{Angles, GGX, GLTF_DIFFUSE, LAMBERT, MIN_MU, MIRROR};
+use super::{
+    Angles, Constant, GGX, GLTF_DIFFUSE, Ggx, LAMBERT, MIN_MU, MIRROR, Masking, Microfacet, Reference,
+    Schlick, SmithCorrelated, SmithSeparable, Unmasked,
+};
 use std::f64::consts::{FRAC_PI_2, LN_2, PI};
 
 const ALPHAS: [f64; 8] = [1e-6, 1e-4, 1e-3, 1e-2, 0.05, 0.1, 0.5, 1.0];
@@ -18,13 +21,22 @@ fn relative(a: [f64; 2], b: [f64; 2]) -> f64 {
     difference([a[0] / b[0], a[1] / b[1]], [1.0; 2])
 }
 
-/// ρ_dh of GGX as it is defined, from its values: no half-vector integral, no horizon.
-fn defined(mu: f64, alpha: f64) -> [f64; 2] {
+/// GGX under other maskings, without Fresnel.
+const CORRELATED: &Microfacet = &white(&SmithCorrelated);
+const SEPARABLE: &Microfacet = &white(&SmithSeparable);
+const UNMASKED: &Microfacet = &white(&Unmasked);
+
+const fn white(masking: &'static dyn Masking) -> Microfacet {
+    Microfacet { ndf: &Ggx, masking, fresnel: &Constant }
+}
+
+/// ρ_dh as it is defined, from values: no half-vector integral, no horizon.
+fn defined(model: &dyn Reference, mu: f64, alpha: f64) -> [f64; 2] {
     let theta_i = mu.acos();
     let ring = |theta_e: f64| {
         let weight = 2.0 * theta_e.cos() * theta_e.sin();
         let value = |delta_phi| {
-            let f = GGX.brdf(&Angles { theta_i, theta_e, delta_phi }, alpha).unwrap_or([f64::NAN; 2]);
+            let f = model.brdf(&Angles { theta_i, theta_e, delta_phi }, alpha).unwrap_or([f64::NAN; 2]);
             f.map(|f| weight * f)
         };
         integrate(value, &[0.0, 0.1, 1.0, PI], 1e-11).value_or_nan()
@@ -34,10 +46,14 @@ fn defined(mu: f64, alpha: f64) -> [f64; 2] {
 
 #[test]
 fn the_integral_over_normals_is_the_definition() {
-    for alpha in [0.05, 0.1, 0.3, 1.0] {
-        for mu in [0.02, 0.2, 0.6, 0.95] {
-            let error = difference(GGX.rho_dh(mu, alpha), defined(mu, alpha));
-            assert!(error < 1e-9, "ρ(μ = {mu}, α = {alpha}) is off by {error:e}");
+    let models: [(&dyn Reference, &[f64]); 3] =
+        [(GGX, &[0.05, 0.1, 0.3, 1.0]), (SEPARABLE, &[0.1, 1.0]), (UNMASKED, &[0.3, 1.0])];
+    for (k, (model, alphas)) in models.into_iter().enumerate() {
+        for &alpha in alphas {
+            for mu in [0.02, 0.2, 0.6, 0.95] {
+                let error = difference(model.rho_dh(mu, alpha), defined(model, mu, alpha));
+                assert!(error < 1e-9, "model {k}: ρ(μ = {mu}, α = {alpha}) is off by {error:e}");
+            }
         }
     }
 }
@@ -45,7 +61,7 @@ fn the_integral_over_normals_is_the_definition() {
 /// The check above can fail: ρ at an α that is wrong in the seventh digit does not pass.
 #[test]
 fn the_definition_tells_a_wrong_alpha() {
-    let error = difference(GGX.rho_dh(0.6, 0.3 * (1.0 + 1e-7)), defined(0.6, 0.3));
+    let error = difference(GGX.rho_dh(0.6, 0.3 * (1.0 + 1e-7)), defined(GGX, 0.6, 0.3));
     assert!(error > 1e-9, "{error:e}");
     assert!(difference([f64::NAN, 0.0], [0.0; 2]).is_nan());
 }
@@ -71,11 +87,62 @@ fn gltf_diffuse_is_a_split_lambert() {
 }
 const GLTF_B_AT_NORMAL: f64 = 0.000081888140563477;
 
-/// GGX, F = 1: ρ(μ = 1, α = 1) = 1 − ln 2.
+/// GGX, F = 1, either Smith: ρ(μ = 1, α = 1) = 1 − ln 2.
 #[test]
 fn ggx_has_its_closed_form() {
-    let [a, b] = GGX.rho_dh(1.0, 1.0);
-    assert!((a + b - (1.0 - LN_2)).abs() < 1e-11, "{a} + {b}");
+    for model in [GGX, SEPARABLE] {
+        let [a, b] = model.rho_dh(1.0, 1.0);
+        assert!((a + b - (1.0 - LN_2)).abs() < 1e-11, "{a} + {b}");
+    }
+}
+
+/// What Fresnel splits adds up to what is there without it.
+#[test]
+fn without_fresnel_it_is_the_sum() {
+    let angles = Angles { theta_i: 0.4, theta_e: 1.1, delta_phi: 0.3 };
+    let sum = |f: Option<[f64; 2]>| f.map_or(f64::NAN, |[a, b]| a + b);
+    assert!((sum(CORRELATED.brdf(&angles, 0.2)) / sum(GGX.brdf(&angles, 0.2)) - 1.0).abs() < 1e-14);
+    for (mu, alpha) in [(0.1, 0.2), (0.7, 1.0), (0.3, 0.0)] {
+        let [a, b] = GGX.rho_dh(mu, alpha);
+        assert!(difference(CORRELATED.rho_dh(mu, alpha), [a + b, 0.0]) < 1e-10);
+    }
+    assert_eq!(CORRELATED.rho_hh(0.0), [1.0, 0.0]);
+    assert_eq!(
+        Microfacet { ndf: &Ggx, masking: &SmithSeparable, fresnel: &Schlick }.rho_hh(0.0),
+        MIRROR.rho_hh(0.0)
+    );
+}
+
+/// As α → 0, ρ of separable Smith depends on μ/α alone: 0.8815 where it is least, near μ = 0.96 α; unlike
+/// correlated, its limit as μ/α → 0 is not 1 but 0.9361.
+#[test]
+fn a_smooth_separable_ggx_has_its_limits() {
+    let rho = |ratio: f64, alpha: f64| SEPARABLE.rho_dh(ratio * alpha, alpha)[0];
+    for ratio in [0.2, 0.96, 5.0] {
+        let change = rho(ratio, 1e-4) - rho(ratio, 1e-6);
+        assert!(change.abs() < 1e-6, "ratio {ratio}: {change:e}");
+    }
+    let least = rho(0.96, 1e-6);
+    assert!((least - 0.8815).abs() < 1e-4, "{least}");
+    assert!(least < rho(0.85, 1e-6) && least < rho(1.07, 1e-6), "{least} is not the least");
+    let grazing = rho(1e-3, 1e-4);
+    assert!((grazing - 0.9361).abs() < 2e-3, "{grazing}");
+    assert!(rho(1e3, 1e-4) > 0.999);
+}
+
+/// Shadowing and masking of the same facet go together, so to take them as independent loses light; none at
+/// all gains it without bound: ρ grows as α/μ.
+#[test]
+fn maskings_are_in_order() {
+    for alpha in [0.1, 0.5, 1.0] {
+        for mu in [0.05, 0.3, 0.8] {
+            let [none, correlated, separable] =
+                [UNMASKED, CORRELATED, SEPARABLE].map(|model| model.rho_dh(mu, alpha)[0]);
+            assert!(none > correlated && correlated > separable, "{none}, {correlated}, {separable}");
+        }
+    }
+    let [near, nearer] = [1e-3, 1e-4].map(|mu| UNMASKED.rho_dh(mu, 0.5)[0]);
+    assert!(near > 1.0 && (nearer / near / 10.0 - 1.0).abs() < 0.05, "{near}, {nearer}");
 }
 
 /// As α → 0, ρ of GGX depends on μ/α alone: 1 at both ends, 0.8915 where it is least, near μ = 1.11 α.

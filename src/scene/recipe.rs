@@ -5,7 +5,7 @@ mod document;
 use super::{Distribution, Material, MaterialLobe, Scene, SubjectRequest, TableRequest, Weights};
 use crate::axis::{Axis, MAX_COUNT, Mapping, Positions, Variable};
 use crate::error::{Error, Result};
-use crate::models::{Component, MODELS};
+use crate::models::{self, Component, FRESNELS, MASKINGS, MODELS, Model};
 use crate::plan::{MAX_GAUSS, MAX_GRID, MAX_SAMPLES, Rule};
 use crate::quantity::{Evaluation, QUANTITIES};
 use crate::storage::Storage;
@@ -62,10 +62,12 @@ fn material(item: Item) -> Result<Material> {
     Ok(Material { name, lobes: items.into_iter().map(lobe).collect::<Result<_>>()?, metallic: None })
 }
 
-/// `{ model = "ggx", roughness = 0.3, f0 = [1.0, 0.78, 0.34] }`
+/// `{ model = "ggx", roughness = 0.3, masking = "smith-separable", f0 = [1.0, 0.78, 0.34] }`
 fn lobe(item: Item) -> Result<MaterialLobe> {
-    let model = model(item.any_table()?.require("model")?)?;
+    let fields = item.any_table()?;
+    let model = model(&fields, fields.require("model")?)?;
     let mut keys = vec!["model"];
+    keys.extend(if model.microfacet.is_some() { &["masking", "fresnel"][..] } else { &[] });
     keys.extend(if model.has_roughness { &["roughness", "alpha"][..] } else { &[] });
     keys.extend(model.components.iter().map(|component| component.weight));
     let fields = item.table(&keys)?;
@@ -129,6 +131,8 @@ fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
         "quantity",
         "material",
         "model",
+        "masking",
+        "fresnel",
         "roughness",
         "alpha",
         "axes",
@@ -189,7 +193,7 @@ fn subject(fields: &Fields, materials: &[Material]) -> Result<(SubjectRequest, R
     match (fields.get("material"), fields.get("model")) {
         (Some(item), None) => {
             let material = item.one_of(materials.iter().map(|m| (m.name.as_str(), m)))?;
-            for key in ["roughness", "alpha"] {
+            for key in ["masking", "fresnel", "roughness", "alpha"] {
                 if let Some(item) = fields.get(key) {
                     return Err(item.refuse("a material has its own; leave this away, or give a model"));
                 }
@@ -202,7 +206,7 @@ fn subject(fields: &Fields, materials: &[Material]) -> Result<(SubjectRequest, R
             Ok((SubjectRequest::Material(material.name.clone()), varies))
         }
         (None, Some(item)) => {
-            let model = model(item)?;
+            let model = model(fields, item)?;
             let given = fields.get("roughness").or(fields.get("alpha"));
             if let (false, Some(item)) = (model.has_roughness, given) {
                 return Err(item.refuse(&format!("{} has no roughness; leave this away", model.name)));
@@ -227,8 +231,22 @@ fn subject(fields: &Fields, materials: &[Material]) -> Result<(SubjectRequest, R
     }
 }
 
-fn model(item: Item) -> Result<&'static crate::models::Model> {
-    item.one_of(MODELS.iter().map(|&model| (model.name, model)))
+/// `model = "ggx"`, and where it is a microfacet model the terms that stand beside it: `masking`, `fresnel`.
+fn model(fields: &Fields, item: Item) -> Result<&'static Model> {
+    let named = item.text().ok().and_then(|name| models::find(name).ok());
+    let model = named.map_or_else(|| item.one_of(MODELS.iter().map(|&model| (model.name, model))), Ok)?;
+    let terms = [("masking", &MASKINGS[..]), ("fresnel", &FRESNELS[..])];
+    let [masking, fresnel] = terms.map(|(key, terms)| match fields.get(key) {
+        None => Ok(None),
+        Some(item) if model.microfacet.is_none() => {
+            Err(item.refuse(&format!("{} is no microfacet model; leave this away", model.name)))
+        }
+        Some(item) => item.one_of(terms.iter().map(|term| (term.name, Some(term.name)))),
+    });
+    match (masking?, fresnel?) {
+        (None, None) => Ok(model),
+        (masking, fresnel) => model.with_terms(masking, fresnel),
+    }
 }
 
 /// Table names are names of files.

@@ -9,6 +9,7 @@ pub(crate) static MODEL: Model = Model {
     name: "gltf_diffuse",
     summary: "glTF's diffuse lobe: f = albedo (1 − Fc)/π with Fc of the half vector",
     source: "glTF 2.0 specification, Appendix B.3.5",
+    microfacet: None,
     components: &Component::DIFFUSE,
     has_roughness: false,
     rho_bound: 1.0,

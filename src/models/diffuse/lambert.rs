@@ -8,6 +8,7 @@ pub(crate) static MODEL: Model = Model {
     name: "lambert",
     summary: "ideal diffuse: f = albedo/π",
     source: "Lambert, Photometria, 1760",
+    microfacet: None,
     components: &Component::DIFFUSE,
     has_roughness: false,
     rho_bound: 1.0,

@@ -1,23 +1,69 @@
 //! GGX: Trowbridge & Reitz 1975; Walter et al. 2007, eq. 33. Twin of `shaders/ndf/ggx.wgsl`.
 
-use crate::models::{Part, part};
+use super::{Map, Ndf, ggx_coarse, ggx_fine, ggx_nodes, ggx_samples};
+use crate::models::fresnel::Fresnel;
+use crate::models::masking::Masking;
+use crate::models::{Part, SlopeCounts, Term, part};
 use crate::pair::Half;
+use crate::reference;
 use std::f64::consts::FRAC_1_PI;
 
-pub(crate) const PART: Part = part!("ndf/ggx");
+pub(crate) struct Ggx;
 
-/// D(ωm), sr⁻¹.
-pub(crate) fn ndf(h: &Half, hz2: f64, alpha: f64) -> f64 {
-    let q = alpha * h.h2 / (alpha * alpha * hz2 + h.ht2);
-    q * q * FRAC_1_PI
+impl Ndf for Ggx {
+    const TERM: Term = Term {
+        name: "ggx",
+        summary: "GGX microfacets",
+        source: "Walter et al. 2007, eq. 20 and 33",
+        part: part!("ndf/ggx"),
+    };
+    const REFERENCE: &'static dyn reference::Ndf = &reference::Ggx;
+    const COARSE: Part = ggx_coarse::PART;
+    const FINE: Part = ggx_fine::PART;
+    const SAMPLES: Part = ggx_samples::PART;
+
+    fn ndf(h: &Half, hz2: f64, alpha: f64) -> f64 {
+        let q = alpha * h.h2 / (alpha * alpha * hz2 + h.ht2);
+        q * q * FRAC_1_PI
+    }
+
+    fn smith_root(mu: f64, alpha: f64) -> f64 {
+        (alpha * alpha + (1.0 - alpha * alpha) * mu * mu).sqrt()
+    }
+
+    fn smith_root_at(x: f64, y: f64, mu_e: f64, alpha: f64) -> f64 {
+        let (a2, b2) = (alpha * alpha, (1.0 - alpha * alpha) * mu_e * mu_e);
+        (a2 * y * y + b2 * x * x).sqrt()
+    }
+
+    fn coarse_end(t_max: f64, alpha: f64) -> f64 {
+        ggx_coarse::map_end(t_max, alpha)
+    }
+
+    fn coarse_map(r: f64, alpha: f64) -> Map {
+        ggx_coarse::map(r, alpha)
+    }
+
+    fn fine_end(t_max: f64, alpha: f64) -> f64 {
+        ggx_fine::map_end(t_max, alpha)
+    }
+
+    fn fine_map(r: f64, alpha: f64) -> Map {
+        ggx_fine::map(r, alpha)
+    }
+
+    fn counts(mu: f64, alpha: f64, tolerance: f64) -> [SlopeCounts; 2] {
+        ggx_nodes::counts(mu, alpha, tolerance)
+    }
+
+    fn by_ndf<M: Masking, F: Fresnel>(draw: [f64; 2], mu_e: f64, alpha: f64) -> [f64; 2] {
+        ggx_samples::by_ndf::<M, F>(draw, mu_e, alpha)
+    }
+
+    fn by_vndf<M: Masking, F: Fresnel>(draw: [f64; 2], mu_e: f64, alpha: f64) -> [f64; 2] {
+        ggx_samples::by_vndf::<M, F>(draw, mu_e, alpha)
+    }
 }
 
 /// Beyond it, in units of α, the lobe holds 1e-18 of its weight.
 pub(crate) const TAN_CAP: f64 = 1e9;
-
-/// A map's tan θm = p/m at r, and `weight` = w dv/dr / m, where D cos θm dωm = w dv dφ / 2π.
-pub(crate) struct Map {
-    pub p: f64,
-    pub m: f64,
-    pub weight: f64,
-}

@@ -1,7 +1,8 @@
 //! The map of GGX's slopes for tolerances down to 1e-6. Twin of `shaders/ndf/ggx_coarse.wgsl`,
 //! which has the derivation.
 
-use super::ggx::{Map, TAN_CAP};
+use super::Map;
+use super::ggx::TAN_CAP;
 use crate::models::{Part, part};
 
 pub(crate) const PART: Part = part!("ndf/ggx_coarse");

@@ -1,8 +1,19 @@
 //! Schlick's approximation of the Fresnel reflectance.
 
-/// Schlick 1994, eq. 15: F = F0 + (1 − F0) Fc with Fc = (1 − ωi·ωm)⁵; `one_minus_cos_d` is 1 − ωi·ωm.
-pub(in crate::reference) fn fc(one_minus_cos_d: f64) -> f64 {
-    one_minus_cos_d.powi(5)
+use super::Fresnel;
+
+/// Schlick 1994, eq. 15: F = F0 + (1 − F0) Fc with Fc = (1 − ωi·ωm)⁵.
+pub(crate) struct Schlick;
+
+impl Fresnel for Schlick {
+    fn weights(&self, cos_d: f64, one_minus_cos_d: f64) -> [f64; 2] {
+        weights(cos_d, one_minus_cos_d)
+    }
+
+    /// 2 ∫ (1 − μ)⁵ μ dμ = 1/21.
+    fn mean(&self) -> [f64; 2] {
+        [20.0 / 21.0, 1.0 / 21.0]
+    }
 }
 
 /// What F0 and F90 weigh: [1 − Fc, Fc].
@@ -11,5 +22,5 @@ pub(in crate::reference) fn fc(one_minus_cos_d: f64) -> f64 {
 /// the half vector grazes.
 pub(in crate::reference) fn weights(cos_d: f64, one_minus_cos_d: f64) -> [f64; 2] {
     let x = one_minus_cos_d;
-    [cos_d * (1.0 + x * (1.0 + x * (1.0 + x * (1.0 + x)))), fc(x)]
+    [cos_d * (1.0 + x * (1.0 + x * (1.0 + x * (1.0 + x)))), x.powi(5)]
 }

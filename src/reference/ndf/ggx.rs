@@ -4,7 +4,7 @@ use super::Ndf;
 use std::f64::consts::PI;
 
 /// Trowbridge & Reitz 1975; Walter et al. 2007.
-pub(in crate::reference) struct Ggx;
+pub(crate) struct Ggx;
 
 impl Ndf for Ggx {
     /// Walter et al. 2007, eq. 33: D = α² / (π cos⁴θm (α² + tan²θm)²).

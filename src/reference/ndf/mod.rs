@@ -3,7 +3,7 @@
 pub(super) mod ggx;
 
 /// D(ωm) of a rough surface, isotropic and shape-invariant: a function of tan θm / α but for cos⁴ θm.
-pub(super) trait Ndf: Sync {
+pub(crate) trait Ndf: Sync {
     /// D, sr⁻¹, at α > 0; its projection ∫ D cos θm dωm is 1.
     fn d(&self, cos2_m: f64, tan2_m: f64, alpha: f64) -> f64;
 

@@ -1,0 +1,10 @@
+// Perfect mirrors, F = 1: what weighs A is then a Fresnel reflectance that is the same at every angle.
+
+/// (1, 0): nothing is B.
+fn fresnel(c: real, x: real) -> real2 {
+    return real2(1.0, 0.0);
+}
+
+fn fresnel_grazing(x: real4) -> real4 {
+    return real4();
+}

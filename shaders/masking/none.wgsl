@@ -1,0 +1,11 @@
+// No masking: G2 = 1 above the horizon. f grows as 1/(μi μe) and ρ as 1/μ: both are unbounded at grazing.
+
+/// G2 / (4 μi μe)
+fn visibility(mu_i: real, mu_e: real, alpha: real) -> real {
+    return 0.25 / (mu_i * mu_e);
+}
+
+/// G2 = 2 μe x / masking(x, y)
+fn masking(x: real4, y: real4, e: Masked) -> real4 {
+    return 2.0 * e.mu * x;
+}

@@ -1,0 +1,13 @@
+// Smith's masking and shadowing as if independent: Walter et al. 2007, eq. 23: G2 = G1(ωi) G1(ωe), with
+// G1 = 1 / (1 + Λ) = 2μ / (μ + (1 + 2Λ) μ).
+
+/// G2 / (4 μi μe)
+fn visibility(mu_i: real, mu_e: real, alpha: real) -> real {
+    return 1.0 / ((mu_i + smith_root(mu_i, alpha)) * (mu_e + smith_root(mu_e, alpha)));
+}
+
+/// G2 = 2 μe x / masking(x, y), for μi = μe x/y.
+fn masking(x: real4, y: real4, e: Masked) -> real4 {
+    let inverse_g1 = 0.5 + 0.5 * e.root / e.mu; // of ωe: no node changes it
+    return inverse_g1 * fma(x, real4(e.mu), smith_root_at(x, y, e));
+}

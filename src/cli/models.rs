@@ -1,0 +1,146 @@
+//! `gonio models`
+
+use super::{HEADING, print, print_json};
+use crate::error::Result;
+use crate::models::{self, ALPHA_MIN_VALUE, Component, FRESNELS, Integral, MASKINGS, MODELS, Model, Term};
+use serde_json::{Value, json};
+
+#[derive(clap::Args)]
+#[command(after_help = AFTER_HELP)]
+pub struct Args {
+    /// One model in detail: its parameters, parts, source and promises
+    #[arg(value_name = "NAME")]
+    name: Option<String>,
+    /// Print JSON on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+const AFTER_HELP: &str = "\
+Examples:
+  gonio models
+  gonio models ggx
+  gonio models ggx-smith-separable-none
+
+Exit codes: 0 success, 2 no such model";
+
+/// A parameter, in the words of recipes and of --set.
+struct Parameter {
+    name: &'static str,
+    range: String,
+    unit: &'static str,
+    /// None: it must be given.
+    default: Option<String>,
+    what: String,
+}
+
+pub fn run(args: &Args) -> Result<()> {
+    match &args.name {
+        Some(name) => one(models::find(name)?, args.json),
+        None if args.json => print_json(&json!({
+            "models": models::all().map(|m| json!({ "name": m.name, "summary": m.summary })).collect::<Vec<_>>(),
+            "masking": terms(&MASKINGS), "fresnel": terms(&FRESNELS),
+        })),
+        None => list(),
+    }
+}
+
+fn list() -> Result<()> {
+    let line = |name: &str, summary: &str| print(&format!("  {name:18}{summary}"));
+    print(&format!("{HEADING}models{HEADING:#}"))?;
+    MODELS.iter().try_for_each(|model| line(model.name, model.summary))?;
+    for (kind, terms) in [("masking", &MASKINGS[..]), ("fresnel", &FRESNELS[..])] {
+        print(&format!("{HEADING}{kind}{HEADING:#} of a microfacet model, the default first"))?;
+        terms.iter().try_for_each(|term| line(term.name, term.summary))?;
+    }
+    Ok(())
+}
+
+fn one(model: &Model, as_json: bool) -> Result<()> {
+    let (parameters, promises) = (parameters(model), promises(model));
+    if as_json {
+        let parameter = |p: &Parameter| json!({ "name": p.name, "range": p.range, "unit": p.unit, "default": p.default, "what": p.what });
+        return print_json(&json!({
+            "name": model.name, "summary": model.summary, "source": model.source,
+            "parameters": parameters.iter().map(parameter).collect::<Vec<_>>(),
+            "parts": model.parts.iter().map(|part| part.name).collect::<Vec<_>>(),
+            "promises": promises,
+        }));
+    }
+    print(&format!("{HEADING}{}{HEADING:#}  {}", model.name, model.summary))?;
+    print(&format!("{HEADING}source{HEADING:#}  {}", model.source))?;
+    print(&format!("{HEADING}parameters{HEADING:#}"))?;
+    for Parameter { name, range, unit, default, what } in &parameters {
+        let default = default.as_ref().map_or("no default".into(), |default| format!("default {default}"));
+        print(&format!("  {name:10}{what}"))?;
+        print(&format!("  {:10}{range}{}{unit}; {default}", "", if unit.is_empty() { "" } else { ", " }))?;
+    }
+    print(&format!("{HEADING}parts{HEADING:#}"))?;
+    for part in model.parts {
+        print(&format!("  shaders/{}.wgsl", part.name))?;
+    }
+    print(&format!("{HEADING}promises{HEADING:#}"))?;
+    promises.iter().try_for_each(|promise| print(&format!("  {promise}")))
+}
+
+fn parameters(model: &Model) -> Vec<Parameter> {
+    let mut all = Vec::new();
+    if model.has_roughness {
+        let what = format!(
+            "alpha = roughness², the slope of the microfacets; values from alpha = {ALPHA_MIN_VALUE:e}"
+        );
+        all.push(Parameter {
+            name: "roughness",
+            range: "[0, 1]".into(),
+            unit: "dimensionless",
+            default: None,
+            what,
+        });
+        let what = "in place of roughness: one of the two is needed".into();
+        all.push(Parameter {
+            name: "alpha",
+            range: "[0, 1]".into(),
+            unit: "dimensionless",
+            default: None,
+            what,
+        });
+    }
+    if let Some(made) = model.microfacet {
+        for (name, terms, term) in
+            [("masking", &MASKINGS[..], &made.masking), ("fresnel", &FRESNELS[..], &made.fresnel)]
+        {
+            let range = terms.iter().map(|term| term.name).collect::<Vec<_>>().join(" | ");
+            all.push(Parameter {
+                name,
+                range,
+                unit: "",
+                default: Some(term.name.into()),
+                what: term.summary.into(),
+            });
+        }
+    }
+    all.extend(model.components.iter().map(|&Component { name, weight, default }| Parameter {
+        name: weight,
+        range: "[0, 1], or three for R, G, B".into(),
+        unit: "dimensionless",
+        default: default.map(|x| x.to_string()),
+        what: format!("what weighs component {name}"),
+    }));
+    all
+}
+
+fn promises(model: &Model) -> Vec<String> {
+    let mut promises = vec!["finite, not negative, reciprocal, isotropic".to_owned()];
+    promises.push(match model.integral {
+        Integral::Unbounded(why) => format!("no energy bound: {why}"),
+        _ => format!("energy: ρ_dh ≤ {} with every weight 1", model.rho_bound),
+    });
+    if model.is_delta() {
+        promises[0] = "a delta: integrals, and no values".into();
+    }
+    promises
+}
+
+fn terms(terms: &[Term]) -> Vec<Value> {
+    terms.iter().map(|t| json!({ "name": t.name, "summary": t.summary, "source": t.source })).collect()
+}

@@ -1,0 +1,27 @@
+//! Smith's masking-shadowing at correlated heights: Heitz 2014, eq. 99. Twin of
+//! `shaders/masking/smith_correlated.wgsl`.
+
+use super::Masking;
+use crate::models::ndf::Ndf;
+use crate::models::{Term, part};
+use crate::reference;
+
+pub(crate) struct SmithCorrelated;
+
+impl Masking for SmithCorrelated {
+    const TERM: Term = Term {
+        name: "smith-correlated",
+        summary: "height-correlated Smith",
+        source: "Heitz 2014, eq. 99",
+        part: part!("masking/smith_correlated"),
+    };
+    const REFERENCE: &'static dyn reference::Masking = &reference::SmithCorrelated;
+
+    fn visibility<N: Ndf>(mu_i: f64, mu_e: f64, alpha: f64) -> f64 {
+        0.5 / (mu_i * N::smith_root(mu_e, alpha) + mu_e * N::smith_root(mu_i, alpha))
+    }
+
+    fn masking<N: Ndf>(x: f64, y: f64, mu_e: f64, alpha: f64) -> f64 {
+        x * N::smith_root(mu_e, alpha) + N::smith_root_at(x, y, mu_e, alpha)
+    }
+}

@@ -1,0 +1,37 @@
+//! Smith's masking and shadowing as if independent: Walter et al. 2007, eq. 23. Twin of
+//! `shaders/masking/smith_separable.wgsl`.
+
+use super::Masking;
+use crate::models::ndf::Ndf;
+use crate::models::{SlopeCounts, Term, part};
+use crate::reference;
+
+pub(crate) struct SmithSeparable;
+
+impl Masking for SmithSeparable {
+    const TERM: Term = Term {
+        name: "smith-separable",
+        summary: "separable Smith",
+        source: "Walter et al. 2007, eq. 23",
+        part: part!("masking/smith_separable"),
+    };
+    const REFERENCE: &'static dyn reference::Masking = &reference::SmithSeparable;
+
+    /// A quarter more: for μ ≪ α its G2 bends where G1(ωi) does, which correlated heights wash out by Λ(ωe).
+    /// Measured: an eighth leaves 1.1 times 1e-6. In fours, so that few rules differ.
+    fn near(SlopeCounts { azimuths, nodes }: SlopeCounts) -> SlopeCounts {
+        SlopeCounts {
+            azimuths: azimuths + azimuths.div_ceil(4),
+            nodes: (nodes + nodes.div_ceil(4)).next_multiple_of(4),
+        }
+    }
+
+    fn visibility<N: Ndf>(mu_i: f64, mu_e: f64, alpha: f64) -> f64 {
+        1.0 / ((mu_i + N::smith_root(mu_i, alpha)) * (mu_e + N::smith_root(mu_e, alpha)))
+    }
+
+    fn masking<N: Ndf>(x: f64, y: f64, mu_e: f64, alpha: f64) -> f64 {
+        let inverse_g1 = 0.5 + 0.5 * N::smith_root(mu_e, alpha) / mu_e;
+        inverse_g1 * (x * mu_e + N::smith_root_at(x, y, mu_e, alpha))
+    }
+}

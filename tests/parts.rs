@@ -1,0 +1,204 @@
+//! Promises of microfacet models put together from other terms than the defaults: the same as of every model,
+//! for each combination.
+
+mod common;
+
+use common::*;
+use gonio::axis::Variable::{DeltaPhi, Mu, ThetaE, ThetaI};
+use gonio::check::Check;
+use gonio::gpu::{Kernel, compose, validate};
+use gonio::models::{self, Integral, MICROFACETS, Model};
+use gonio::plan::{INTEGRAL_F32, Plan, Precision, STORED_F32, Selection, TablePlan, VALUE_F32};
+use gonio::quantity::{BRDF, RHO_DH, RHO_HH, SPLIT_SUM};
+use gonio::scene::{Distribution, Material, MaterialLobe, Scene, Weights};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// The combinations that have integrals.
+fn bounded() -> impl Iterator<Item = &'static Model> {
+    MICROFACETS.iter().filter(|model| matches!(model.integral, Integral::Slopes(_)))
+}
+
+/// Values at the extremes and between, within the budget that stands beside `VALUE_F32`, which separable
+/// Smith's (four roundings and a product for each direction) and none keep too; and reciprocal, bit by bit but
+/// for what contraction is worth.
+#[test]
+fn values_agree_with_the_reference_and_are_reciprocal() {
+    let mut thetas = extreme_thetas();
+    thetas.extend(golden(8, 0.1).iter().map(|u| u * FRAC_PI_2));
+    let mut deltas = vec![0.0, 1e-7, 1e-4, 1e-2, FRAC_PI_2, PI - 1e-6, PI];
+    deltas.extend(golden(6, 0.7).iter().map(|u| u * PI));
+    for model in MICROFACETS.iter() {
+        let axes = vec![listed(ThetaI, &thetas), listed(ThetaE, &thetas), listed(DeltaPhi, &deltas)];
+        let plan = basis(&BRDF, model, &EXTREME_ROUGHNESS, axes);
+        for (evaluator, budget) in evaluators().into_iter().zip([VALUE_F32, STORED_F32 + 2e-8]) {
+            let table = bake(evaluator, &plan, Check::All);
+            let worst = table.error.measured_max.unwrap();
+            println!("{} {}: {worst:.2e}", model.name, table.precision);
+            assert!(worst <= budget, "{}: {:?}", model.name, table.error);
+            let [n, d] = [thetas.len(), deltas.len()];
+            for outer in 0..EXTREME_ROUGHNESS.len() {
+                for (a, b, k) in (0..n).flat_map(|a| (0..a).flat_map(move |b| (0..d).map(move |k| (a, b, k))))
+                {
+                    let at = |a, b| table.texel(((outer * n + a) * n + b) * d + k);
+                    for (there, back) in at(a, b).into_iter().zip(at(b, a)) {
+                        let budget = 2.0 * f64::from(f32::EPSILON) * there.max(back);
+                        assert!((there - back).abs() <= budget, "{}: {there} and {back}", model.name);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Integrals at the extremes and between: α from 0 to 1, μ from 2⁻²⁴ to 1.
+#[test]
+fn integrals_agree_with_the_reference() {
+    let mut roughness = EXTREME_ROUGHNESS.to_vec();
+    roughness.extend([0.0, 3e-3, 0.2, 0.5]);
+    let mut mus = vec![1e-7, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0];
+    mus.extend(golden(6, 0.2));
+    for model in bounded() {
+        let plans = [
+            basis(&SPLIT_SUM, model, &roughness, vec![listed(Mu, &mus)]),
+            basis(&RHO_DH, model, &roughness, vec![listed(ThetaI, &extreme_thetas())]),
+            basis(&RHO_HH, model, &roughness, vec![]),
+        ];
+        for plan in plans {
+            for evaluator in evaluators() {
+                let table = bake(evaluator, &plan, Check::All);
+                let worst = table.error.measured_max.unwrap();
+                println!("{}.{} {}: {worst:.1e}", model.name, plan.quantity.name, table.precision);
+                assert!(worst <= INTEGRAL_F32, "{plan}: {:?}", table.error);
+            }
+        }
+    }
+}
+
+/// Tolerances are met where the counts were made for other terms; the reference adds 1e-10.
+#[test]
+fn integrals_meet_every_tolerance() {
+    let roughness = [0.05, 0.15, 0.3, 0.6, 1.0];
+    let mus = [1e-3, 0.03, 0.2, 0.5, 0.9, 1.0];
+    for model in bounded() {
+        for tolerance in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8] {
+            for plan in [
+                basis(&SPLIT_SUM, model, &roughness, vec![listed(Mu, &mus)]),
+                basis(&RHO_HH, model, &roughness, vec![]),
+            ] {
+                let plan = plan.with_tolerance(tolerance);
+                let table = bake(device(), &plan, Check::All);
+                let worst = table.error.measured_max.unwrap();
+                assert!(worst <= tolerance + 1e-10, "{plan}: {:?}", table.error);
+            }
+        }
+    }
+}
+
+/// The white furnace, and the limits of α → 0 that each Smith has.
+#[test]
+fn integrals_conserve_energy_and_meet_closed_forms() {
+    for model in bounded() {
+        let roughness: Vec<_> = (0..=20).map(|k| k as f64 / 20.0).collect();
+        let table =
+            bake(device(), &basis(&SPLIT_SUM, model, &roughness, vec![axis(Mu, 64)]), Check::Sample(0));
+        for texel in 0..table.texels() {
+            let rho: f64 = table.texel(texel).into_iter().sum();
+            assert!((0.0..=1.0 + INTEGRAL_F32).contains(&rho), "{}: {rho}", model.name);
+        }
+        let rho = |alpha: f64, mu: f64| {
+            let plan = basis(&SPLIT_SUM, model, &[alpha.sqrt()], vec![listed(Mu, &[mu])]);
+            bake(device(), &plan, Check::Sample(0)).values.iter().sum::<f64>()
+        };
+        assert!((rho(1.0, 1.0) - (1.0 - 2f64.ln())).abs() <= INTEGRAL_F32, "{}", model.name);
+        let (ratio, least, grazing) = match model.microfacet.unwrap().masking.name {
+            "smith-separable" => (0.96, 0.8815, 0.9361),
+            _ => (1.11, 0.8915, 1.0),
+        };
+        let at = |ratio: f64| rho(1e-3, ratio * 1e-3);
+        assert!((at(ratio) - least).abs() < 5e-4, "{}: {}", model.name, at(ratio));
+        assert!((at(1e-3) - grazing).abs() < 3e-3, "{}: {}", model.name, at(1e-3));
+    }
+}
+
+/// A module has the parts of its model and no other, and is valid for every WebGPU device.
+#[test]
+fn shaders_have_their_parts_alone() {
+    let kernels = [
+        Kernel::Values,
+        Kernel::Points,
+        Kernel::Product,
+        Kernel::Slopes,
+        Kernel::FineSlopes,
+        Kernel::Ndf,
+        Kernel::Vndf,
+        Kernel::Random,
+    ];
+    for model in MICROFACETS.iter() {
+        let values_alone = matches!(model.integral, Integral::Unbounded(_));
+        for &kernel in &kernels[..if values_alone { 3 } else { kernels.len() }] {
+            let source = compose(kernel, Some(model), model.components.len(), Precision::F32);
+            validate(&source, Precision::F32).unwrap();
+            let of_kind = |kind: &str| source.matches(&format!("// ---- {kind}/")).count();
+            assert_eq!(["masking", "fresnel"].map(of_kind), [1, 1], "{}", model.name);
+        }
+    }
+}
+
+fn scene(model: &str) -> Scene {
+    let lobe = MaterialLobe {
+        model: model.into(),
+        roughness: Some(Distribution::constant(0.3)),
+        weights: Weights::Constant([[0.5; 3], [0.0; 3]]),
+    };
+    let materials = vec![Material { name: "gold".into(), lobes: vec![lobe], metallic: None }];
+    Scene { file: "test.toml".into(), materials, ..Scene::default() }
+}
+
+/// A plan names its bases, tables and so files by the model, and has what the model can do.
+#[test]
+fn plans_name_the_terms() {
+    let plan = Plan::new(&scene("ggx-smith-separable-none"), &Selection::default()).unwrap();
+    let names: Vec<_> = plan.tables.iter().map(|t| t.name.as_str()).collect();
+    assert_eq!(
+        names,
+        ["brdf", "rho_dh", "rho_hh", "split_sum"]
+            .map(|quantity| format!("ggx-smith-separable-none.{quantity}"))
+            .iter()
+            .map(String::as_str)
+            .chain(["gold.brdf", "gold.rho_dh"])
+            .collect::<Vec<_>>()
+    );
+    assert_eq!(plan.tables[3].channels, ["A"]);
+    assert_eq!(plan.bases[0].model, "ggx-smith-separable-none");
+}
+
+/// Without masking ρ is unbounded: the values are planned, the integrals left out or refused, with the reason.
+#[test]
+fn what_is_unbounded_has_no_integrals_and_says_why() {
+    let plan = Plan::new(&scene("ggx-none-schlick"), &Selection::default()).unwrap();
+    let names: Vec<_> = plan.tables.iter().map(|t| t.name.as_str()).collect();
+    assert_eq!(names, ["ggx-none-schlick.brdf", "gold.brdf"]);
+    for what in ["ggx-none-schlick.rho_dh", "gold.rho_dh"] {
+        let left = plan.left_out.iter().find(|l| l.what == what).unwrap();
+        assert!(left.why.contains("without masking"), "{}", left.why);
+    }
+    let model = model("ggx-none-schlick");
+    let axes = || vec![axis(ThetaI, 4)];
+    let error = TablePlan::basis("t", &RHO_DH, model, Some(0.5), axes()).unwrap_err().to_string();
+    assert!(error.contains("beyond any bound") && error.contains("brdf"), "{error}");
+    // It really breaks it.
+    assert!(model.reference.unwrap().rho_dh(0.01, 0.25)[0] > 1.0 && model.rho_bound.is_infinite());
+}
+
+/// Names that are none are refused with those that are.
+#[test]
+fn unknown_terms_are_refused_with_the_words_there_are() {
+    let ggx = model("ggx");
+    let masking = ggx.with_terms(Some("smith"), None).unwrap_err().to_string();
+    assert!(masking.contains("smith-correlated, smith-separable, none"), "{masking}");
+    let fresnel = ggx.with_terms(None, Some("exact")).unwrap_err().to_string();
+    assert!(fresnel.contains("schlick, none"), "{fresnel}");
+    let lambert = model("lambert").with_terms(None, Some("none")).unwrap_err().to_string();
+    assert!(lambert.contains("no microfacet model"), "{lambert}");
+    assert!(models::find("ggx-none").is_err());
+}
