@@ -97,11 +97,11 @@ impl Tally {
     }
 
     /// Whether an error is larger than all before.
-    fn add(&mut self, value: f32, reference: f64) -> bool {
+    fn add(&mut self, value: f32, reference: f64, floor: f64) -> bool {
         let error = (f64::from(value) - reference).abs();
         // Also where the reference is NaN: what has no truth has no error bound.
         let error = if error.is_finite() { error } else { f64::INFINITY };
-        let scale = reference.abs().max(VALUE_FLOOR);
+        let scale = reference.abs().max(floor);
         let [relative, ulp] = [error / scale, error / spacing(scale)];
         self.relative.add(relative);
         self.ulp.add(ulp);
@@ -153,6 +153,13 @@ impl Tally {
             worst: self.worst.clone(),
         }
     }
+}
+
+/// What errors are relative to at least: [`VALUE_FLOOR`], or 2⁻¹⁰⁰ of the sum of the components. A component so
+/// much smaller than the other, as Fc = x⁵ is a hair from normal incidence, is the product of a large number
+/// with one that has left f32's exponents, 2⁻¹²⁶, where it loses digits and on some devices all of them.
+pub(super) fn floor(components: [f64; 2]) -> f64 {
+    VALUE_FLOOR.max((components[0] + components[1]) * 2f64.powi(-100))
 }
 
 /// The spacing of f32 at a positive value.
@@ -223,7 +230,7 @@ pub(super) fn measure(
             for ((angles, truth), (there, back)) in angles.iter().zip(&truths).zip(pairs) {
                 for channel in 0..channels {
                     let (value, reference) = (there[channel], truth[channel]);
-                    if tally.add(value, reference) {
+                    if tally.add(value, reference, floor(*truth)) {
                         let Angles { theta_i, phi_i, theta_e, phi_e } = angles;
                         // The shortest digits that read back as the same f64, 17 at most.
                         let eval = format!(

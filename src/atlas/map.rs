@@ -1,7 +1,6 @@
 //! Where over the hemispheres: the largest error over δφ, for each θi and θe.
 
-use super::band::Subject;
-use crate::check::VALUE_FLOOR;
+use super::band::{Subject, floor};
 use crate::error::Result;
 use crate::points::Angles;
 use rayon::prelude::*;
@@ -43,11 +42,12 @@ pub(super) fn measure(subject: &mut Subject, alpha: f64, shown: Option<f64>) -> 
             .par_iter()
             .zip(values.par_chunks_exact(channels))
             .map(|(angles, values)| {
-                let error = |(&value, truth): (&f32, f64)| {
-                    let error = (f64::from(value) - truth).abs() / truth.max(VALUE_FLOOR);
+                let truth = reference(angles, alpha);
+                let error = |(&value, truth_of): (&f32, f64)| {
+                    let error = (f64::from(value) - truth_of).abs() / truth_of.max(floor(truth));
                     if error.is_nan() { f64::INFINITY } else { error }
                 };
-                values.iter().zip(reference(angles, alpha)).map(error).fold(0.0, f64::max)
+                values.iter().zip(truth).map(error).fold(0.0, f64::max)
             })
             .collect();
         errors.push(

@@ -3,9 +3,12 @@
 //! of the GGX term lose.
 //!
 //! ```text
-//! relative error = |f − f64| / max(f64, floor)        ULP = |f − f64| / spacing of f32 at f64
+//! relative error = |f − f64| / max(f64, floor)        ULP = |f − f64| / spacing of f32 at max(f64, floor)
 //! reciprocity    = |f(ωi, ωe) − f(ωe, ωi)| / max of both
 //! ```
+//!
+//! of each component (A, what F0 weighs, and B, what F90 does). The floor is 1e-30 sr⁻¹, or 2⁻¹⁰⁰ of A + B:
+//! below it f32 runs out of exponents.
 //!
 //! There is no search as in [`promises`](crate::promises): rounding is noise in the digits of an input and has
 //! no slope to climb. The number of inputs decides how far the tail of it is seen.
@@ -44,10 +47,9 @@ pub const DEFAULT_BUDGET: u64 = 4_000_000;
 
 /// The largest relative error that a value may have at an α.
 ///
-/// A first-order analysis stands beside [`VALUE_F32`](crate::plan::VALUE_F32): 40 roundings of 2⁻²⁴,
-/// 2.4e-6, were all of them to meet at their largest. Half of it is more than what they ever add up to, so
-/// 2e-6 is promised; where α < 1e-4 there is room for devices whose divisions and roots are 2.5 ULP instead
-/// of a half, as WGSL allows.
+/// Were all roundings to meet at their largest, 2.4e-6 ([`VALUE_F32`](crate::plan::VALUE_F32)); that they do
+/// not, as their signs are chance, makes 2e-6. Where α < 1e-4 there is room for devices whose divisions are off
+/// by 2.5 ULP in place of a half, as WGSL allows.
 pub fn promise(alpha: f64) -> f64 {
     if alpha >= 1e-4 { 2e-6 } else { 1e-5 }
 }

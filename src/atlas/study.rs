@@ -43,9 +43,10 @@ macro_rules! form {
     };
 }
 
-const FORMS: [Form; 6] = [
+const FORMS: [Form; 7] = [
     form!("acos(n·h)", "half_angle", "Rusinkiewicz 1998; MERL BRDFRead.cpp"),
-    form!("NoH²(α²−1)+1", "noh2", "Karis 2013; three.js and Unreal Engine, D_GGX"),
+    form!("NoH²(α²−1)+1", "noh2", "Karis 2013; three.js, D_GGX"),
+    form!("(NoH α²−NoH)NoH+1", "mad", "Karis 2013; Unreal Engine, BRDF.ush, D_GGX"),
     form!("tan²θm = (1−cos²)/cos²", "tan2", "Walter et al. 2007, eq. 33; pbrt-v4, scattering.h"),
     form!("1−NoH²", "one_minus_noh2", "Filament (desktop) and Bevy, D_GGX"),
     form!("|n×h|²", "cross", "Filament (mobile), D_GGX"),

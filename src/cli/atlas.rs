@@ -125,12 +125,12 @@ fn lines(page: &Page) -> Vec<String> {
 fn line(b: &Band) -> String {
     let alpha = b.alpha.map_or("–".into(), |[low, high]| format!("{low:e} – {high:e}"));
     format!(
-        "  {alpha:13}  {:>8}  {:>8.1e}  {:>8.1e}  {:>8}  {:>9.1}  {:>11.1e}  {:>8}  {:>7}",
+        "  {alpha:13}  {:>8}  {:>8.1e}  {:>8.1e}  {:>8}  {:>9}  {:>11.1e}  {:>8}  {:>7}",
         b.values,
         b.median,
         b.max,
         b.promise.map_or("–".into(), |promise| format!("{promise:.0e}")),
-        b.max_ulp,
+        if b.max_ulp < 1e4 { format!("{:.1}", b.max_ulp) } else { format!("{:.1e}", b.max_ulp) },
         b.reciprocity,
         b.unequal,
         b.non_finite

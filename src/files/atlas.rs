@@ -13,15 +13,17 @@ use std::f64::consts::FRAC_PI_2;
 const MAX: Color = [213, 94, 0];
 const MEDIAN: Color = [0, 114, 178];
 const PROMISE: Color = [16; 3];
-const FORMS: [Color; 8] = [
-    [204, 121, 167],
-    [230, 159, 0],
-    [86, 180, 233],
-    [0, 158, 115],
-    [0, 72, 140],
-    [240, 228, 66],
-    [120; 3],
-    [213, 94, 0],
+/// Of the study's forms, in their order: colours, and widths that let those below be seen where lines coincide.
+const FORMS: [(Color, f32); 9] = [
+    ([204, 121, 167], 2.5),
+    ([86, 180, 233], 13.0),
+    ([230, 159, 0], 9.5),
+    ([0, 0, 0], 2.0),
+    ([0, 158, 115], 5.5),
+    ([0, 72, 140], 6.0),
+    ([240, 228, 66], 2.5),
+    ([190; 3], 10.0),
+    ([213, 94, 0], 3.0),
 ];
 /// Half the spacing of f32 at 1: what the rounding of the result alone may cost.
 const HALF_ULP: f64 = 1.0 / (1 << 24) as f64;
@@ -76,8 +78,14 @@ fn by_alpha(canvas: &mut Canvas, frame: Frame, bands: &[Band]) {
     let of = |value: fn(&Band) -> Option<f64>| -> Vec<_> {
         bands.iter().filter_map(|band| Some((place(band), value(band)?))).collect()
     };
+    // A step has two points where it is.
+    let mut promised: Vec<(f64, f64)> = Vec::new();
+    for (alpha, promise) in of(|band| band.promise) {
+        promised.extend(promised.last().map(|&(_, before)| (alpha, before)));
+        promised.push((alpha, promise));
+    }
     let lines = [
-        ("promise", PROMISE, of(|band| band.promise)),
+        ("promise", PROMISE, promised),
         ("largest", MAX, of(|band| Some(band.max))),
         ("median", MEDIAN, of(|band| Some(band.median))),
     ];
@@ -122,8 +130,11 @@ fn plot(canvas: &mut Canvas, frame: Frame, x: &Scale, lines: &[Line], below: &st
     for (name, color, points) in lines {
         let points: Vec<_> = points.iter().map(|&point| at(point)).collect();
         canvas.line(&points, 2.5, *color);
-        let Some(&(_, y)) = points.last() else { continue };
-        canvas.text(name, (frame.x + frame.w - 10.0, y - 14.0), LABEL_SIZE, Align::Right, *color);
+        // Below what is near its end; the promise stands above.
+        let near = points.iter().filter(|point| point.0 > frame.x + 0.8 * frame.w);
+        let Some(lowest) = near.map(|point| point.1).reduce(f32::max) else { continue };
+        let y = if *name == "promise" { lowest - 14.0 } else { lowest + 16.0 };
+        canvas.text(name, (frame.x + frame.w - 10.0, y), LABEL_SIZE, Align::Right, *color);
     }
 }
 
@@ -163,7 +174,7 @@ pub(crate) fn draw_study(forms: &[Page]) -> Result<Vec<u8>> {
         Align::Left,
         BLACK,
     );
-    let said = "D·V against f64, over pairs within the lobe (99 % of its normals), θ ≤ 89.9°; at the upper border: not finite, or 10 and more";
+    let said = "D·V against f64, over pairs within the lobe (99 % of its normals), θ ≤ 89.9°. Upper border: 10 and more, or not finite. Thick lines lie below thin ones";
     canvas.text(said, (30.0, 54.0), LABEL_SIZE, Align::Left, GREY);
     let (w, h) = (365.0, 640.0 - TOP - BELOW - 10.0);
     let values: [(&str, fn(&Band) -> f64); 2] =
@@ -176,18 +187,20 @@ pub(crate) fn draw_study(forms: &[Page]) -> Result<Vec<u8>> {
         ticks_below(&mut canvas, frame, &x, true);
         ticks_left(&mut canvas, frame, &y, true);
         axis_labels(&mut canvas, frame, "α", &format!("{name} relative error"));
-        for (form, color) in forms.iter().zip(FORMS) {
+        let mut lines: Vec<_> = forms.iter().zip(FORMS).collect();
+        lines.sort_by(|a, b| b.1.1.total_cmp(&a.1.1));
+        for (form, (color, width)) in lines {
             let at = |band: &Band| {
                 let u = x.at(band.alpha.map_or(1.0, |[low, _]| low)) as f32;
                 let v = y.at(value(band)).clamp(0.0, 1.0) as f32;
                 (frame.x + w * u, frame.y + h * (1.0 - v))
             };
-            canvas.line(&form.alphas.iter().map(at).collect::<Vec<_>>(), 2.5, color);
+            canvas.line(&form.alphas.iter().map(at).collect::<Vec<_>>(), width, color);
         }
     }
     let (x, mut y) = (LEFT + 10.0 + 2.0 * (w + 92.0) - 66.0, TOP + 14.0);
-    for (form, color) in forms.iter().zip(FORMS) {
-        canvas.line(&[(x, y), (x + 22.0, y)], 3.5, color);
+    for (form, (color, width)) in forms.iter().zip(FORMS) {
+        canvas.line(&[(x, y), (x + 22.0, y)], width, color);
         canvas.text(&form.subject, (x + 30.0, y), LABEL_SIZE, Align::Left, BLACK);
         y += 28.0;
     }
