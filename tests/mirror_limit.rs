@@ -42,6 +42,9 @@ fn integrals_join_the_mirror_as_alpha_squared() {
 /// G2 = 1/√(1 + α² tan²θ): f = (1 − Fc) / (4 π α² μ² √(1 + α² tan²θ)), Fc = x⁵, x = 1 − μ
 /// (and 1 − x⁵ = μ (1 + x + x² + x³ + x⁴)). With μ ≥ 2⁻²⁴ that is the horizon too. A, and A + B, which has no Fresnel, are compared. The budget of a value stands beside `VALUE_F32`; the CPU path rounds to storage alone,
 /// plus what f64 loses of angles (as in tests/values.rs).
+///
+/// The f64 nearest to π is 1.2e-16 rad from the mirror direction, and a lobe of α = 1e-6 at the horizon shows
+/// it, by 2e-6: tan θm = sin θ sin(δφ/2)/μ.
 #[test]
 fn the_peak_is_exact_down_to_the_smallest_alpha() {
     let thetas = [0.0, 1e-7, 1e-3, 0.3, 0.8, 1.2, 1.5, FRAC_PI_2 - 1e-3, FRAC_PI_2 - 1e-6, FRAC_PI_2];
@@ -53,8 +56,10 @@ fn the_peak_is_exact_down_to_the_smallest_alpha() {
                 let tan2 = (1.0 - mu) * (1.0 + mu) / (mu * mu);
                 let x = 1.0 - mu;
                 let one_minus_fc = mu * (1.0 + x + x.powi(2) + x.powi(3) + x.powi(4));
-                let all = 1.0 / (4.0 * PI * (alpha * mu).powi(2) * (1.0 + alpha * alpha * tan2).sqrt());
                 let mirror = Angles { theta_i: theta, phi_i: 0.0, theta_e: theta, phi_e: PI };
+                let tan2_m = (theta.sin() * (0.5 * mirror.delta_phi()).sin() / mu).powi(2);
+                let d = 1.0 / (PI * (alpha + tan2_m / alpha).powi(2));
+                let all = d / (4.0 * mu * mu * (1.0 + alpha * alpha * tan2).sqrt());
                 let lobe =
                     Lobe { model: model("ggx"), roughness: Some(1.0), weights: vec![[1.0, 0.0], [1.0, 1.0]] };
                 let mut values = Vec::new();
