@@ -6,12 +6,14 @@ use crate::points::Angles;
 use rayon::prelude::*;
 use serde::Serialize;
 
+type Evaluate<'a> = dyn FnMut(&[f64], &[Angles], &mut Vec<f32>) -> Result<()> + 'a;
+
 /// What is measured.
 pub(super) struct Subject<'a> {
     /// 1 or 2.
     pub channels: usize,
     /// f by α, pair of directions and channel.
-    pub evaluate: &'a mut dyn FnMut(&[f64], &[Angles], &mut Vec<f32>) -> Result<()>,
+    pub evaluate: &'a mut Evaluate<'a>,
     /// The same in f64.
     pub reference: &'a (dyn Fn(&Angles, f64) -> [f64; 2] + Sync),
     /// A channel at an α, in the words of `gonio eval`.

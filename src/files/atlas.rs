@@ -60,6 +60,8 @@ fn in_words(page: &Page) -> String {
     };
     let values: u64 = page.decades.iter().map(|band| band.values).sum();
     let Angles { theta_i, theta_e, .. } = worst.angles;
+    // Less than an azimuth's last digit.
+    let delta = Some(worst.angles.delta_phi()).filter(|d| d.abs() > 1e-15).unwrap_or(0.0);
     let alpha = band.alpha.map_or(String::new(), |_| format!("α = {}, ", short(worst.alpha)));
     format!(
         "largest of {values} errors: {:.2e} = {:.1} ULP, at {alpha}θi = {}°, θe = {}°, δφ = {}°",
@@ -67,7 +69,7 @@ fn in_words(page: &Page) -> String {
         band.max_ulp,
         short(theta_i.to_degrees()),
         short(theta_e.to_degrees()),
-        short(worst.angles.delta_phi().to_degrees())
+        short(delta.to_degrees())
     )
 }
 
@@ -127,13 +129,18 @@ fn plot(canvas: &mut Canvas, frame: Frame, x: &Scale, lines: &[Line], below: &st
         canvas.fill(Frame { x: frame.x + k as f32, y: half, w: 4.0, h: 1.0 }, GREY);
     }
     canvas.text("2⁻²⁴", (frame.x + 8.0, half - 11.0), LABEL_SIZE, Align::Left, GREY);
+    let mut names = Vec::new();
     for (name, color, points) in lines {
         let points: Vec<_> = points.iter().map(|&point| at(point)).collect();
         canvas.line(&points, 2.5, *color);
         // Below what is near its end; the promise stands above.
         let near = points.iter().filter(|point| point.0 > frame.x + 0.8 * frame.w);
         let Some(lowest) = near.map(|point| point.1).reduce(f32::max) else { continue };
-        let y = if *name == "promise" { lowest - 14.0 } else { lowest + 16.0 };
+        let mut y = if *name == "promise" { lowest - 14.0 } else { lowest + 16.0 };
+        if names.iter().any(|other: &f32| (other - y).abs() < 18.0) {
+            y += 18.0;
+        }
+        names.push(y);
         canvas.text(name, (frame.x + frame.w - 10.0, y), LABEL_SIZE, Align::Right, *color);
     }
 }
@@ -164,6 +171,9 @@ fn hemispheres(canvas: &mut Canvas, frame: Frame, map: &Map) {
     color_bar(canvas, bar, &scale, "relative error × 10⁶");
 }
 
+/// A name, and what it is of a band.
+type Column = (&'static str, fn(&Band) -> f64);
+
 /// The study, as a PNG file: median and largest error of each form by decade of α.
 pub(crate) fn draw_study(forms: &[Page]) -> Result<Vec<u8>> {
     let mut canvas = Canvas::new(1180, 640)?;
@@ -177,8 +187,7 @@ pub(crate) fn draw_study(forms: &[Page]) -> Result<Vec<u8>> {
     let said = "D·V against f64, over pairs within the lobe (99 % of its normals), θ ≤ 89.9°. Upper border: 10 and more, or not finite. Thick lines lie below thin ones";
     canvas.text(said, (30.0, 54.0), LABEL_SIZE, Align::Left, GREY);
     let (w, h) = (365.0, 640.0 - TOP - BELOW - 10.0);
-    let values: [(&str, fn(&Band) -> f64); 2] =
-        [("median", |band| band.median), ("largest", |band| band.max)];
+    let values: [Column; 2] = [("median", |band| band.median), ("largest", |band| band.max)];
     let (x, y) =
         (Scale { range: [DECADES[0], 1.0], kind: Kind::Log }, Scale { range: [1e-8, 10.0], kind: Kind::Log });
     for (k, (name, value)) in values.into_iter().enumerate() {
