@@ -6,7 +6,6 @@ mod common;
 use common::*;
 use gonio::axis::Axis;
 use gonio::axis::Variable::{self, Mu, ThetaI};
-use gonio::bake::Evaluator;
 use gonio::check::Check;
 use gonio::models::MODELS;
 use gonio::plan::{INTEGRAL_F32, Rule, TablePlan};
