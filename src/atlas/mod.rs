@@ -1,5 +1,5 @@
 //! The error atlas: what f32 on a device loses against the f64 reference, for every model that has values,
-//! over (θi, θe, δφ) and α with all their extremes; and, as a [`study`], what the field's published forms
+//! over (θi, θe, δφ) and α with all their extremes; and, as a [`study()`], what the field's published forms
 //! of the GGX term lose.
 //!
 //! ```text
