@@ -23,6 +23,7 @@
 //! | [`check`] | a table's texels against the reference | how they were computed |
 //! | [`promises`] | what a BRDF promises, and the worst input that breaks it | how it is evaluated |
 //! | [`trade`] | every method at every cost: time and error, and the front | files, devices |
+//! | [`atlas`] | what f32 loses against f64, by model and decade of α; the published forms of GGX | how values are computed |
 //! | [`bake`] | the order of it all: evaluate, look, check, write | how any of it is done |
 //! | [`points`] | values at any list of pairs of directions, unlooked at | tables, files |
 //! | [`storage`], `interpolation`, `optimise` | what rounding and bilinear look-ups cost, and the least bytes for a tolerance | devices, files |
@@ -66,6 +67,7 @@
 //! `scene` reads glTF and recipes, `files` writes tables, `cli` is the command and has both; it is the
 //! default. An embedder takes none of them: `default-features = false`.
 
+pub mod atlas;
 pub mod axis;
 pub mod bake;
 pub mod check;

@@ -1,5 +1,6 @@
 //! The command line: parse, call, print.
 
+mod atlas;
 mod bake;
 mod check;
 mod devices;
@@ -30,6 +31,8 @@ enum Command {
     Eval(eval::Args),
     /// Hunt for inputs that break what a BRDF promises: finite, reciprocal, no energy gained
     Check(check::Args),
+    /// Measure what f32 loses against f64: by model, by decade of α, and where it is worst
+    Atlas(atlas::Args),
     /// Measure time against error: every method at every cost
     Trade(trade::Args),
     /// List the models and the parts that they are made of, or one in detail
@@ -43,6 +46,7 @@ Examples:
   gonio bake scene.gltf --out tables
   gonio eval --model ggx --set roughness=0.3 --theta-i 45deg --theta-e 45deg
   gonio check --wgsl brdf.wgsl --entry brdf --set roughness=0.05..1
+  gonio atlas --out atlas
   gonio trade --quantity split_sum --model ggx --out trade
   gonio models ggx
   gonio devices
@@ -62,6 +66,7 @@ pub fn main() -> ExitCode {
         Command::Bake(args) => bake::run(&args),
         Command::Eval(args) => eval::run(&args),
         Command::Check(args) => check::run(&args),
+        Command::Atlas(args) => atlas::run(&args),
         Command::Trade(args) => trade::run(&args),
         Command::Models(args) => models::run(&args),
         Command::Devices(args) => devices::run(&args),

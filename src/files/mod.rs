@@ -1,6 +1,7 @@
 //! Files: one writer a format, and whole sets of tables written all or nothing; lists of directions, and
 //! values at them.
 
+mod atlas;
 mod canvas;
 mod colormap;
 mod entry;
@@ -18,6 +19,7 @@ mod set;
 mod stream;
 mod tradeoff;
 
+pub(crate) use atlas::{draw_page, draw_study};
 pub use entry::TableEntry;
 #[cfg(feature = "cli")]
 pub(crate) use list::List;
