@@ -124,7 +124,9 @@ pub(super) fn hold(findings: &mut [Finding], declared: &Declared, shows: bool) -
         ))
     })?;
     let (verdict, note) = match (finding.verdict, finding.deviation) {
-        (Verdict::Kept, _) if !shows => (Verdict::Kept, "declared broken, which these parameters do not show"),
+        (Verdict::Kept, _) if !shows => {
+            (Verdict::Kept, "declared broken, which these parameters do not show")
+        }
         (Verdict::Kept, _) => (Verdict::Broken, "declared broken, and kept: take the declaration back"),
         (_, Some(deviation)) if deviation <= declared.bound => (Verdict::Declared, "as declared"),
         _ => (Verdict::Broken, "beyond the declared bound"),

@@ -237,7 +237,8 @@ impl Subject for Sum<'_> {
             let setting: Vec<_> = free.iter().enumerate().map(end).collect();
             let thetas = [0.0, 60.0, 80.0, 87.0, 89.5].map(f64::to_radians).into_iter().chain([FRAC_PI_2]);
             thetas.into_iter().any(|theta| {
-                self.reference_rho(&setting, theta).is_some_and(|rho| rho > 1.0 + 2.0 * self.tolerances().energy)
+                self.reference_rho(&setting, theta)
+                    .is_some_and(|rho| rho > 1.0 + 2.0 * self.tolerances().energy)
             })
         })
     }
@@ -264,9 +265,8 @@ fn alpha(lobe: &Lobe) -> f64 {
 }
 
 fn has_values(lobes: &[Lobe]) -> bool {
-    let delta = |lobe: &Lobe| {
-        lobe.model.is_delta() || lobe.model.has_roughness && alpha(lobe) < ALPHA_MIN_VALUE
-    };
+    let delta =
+        |lobe: &Lobe| lobe.model.is_delta() || lobe.model.has_roughness && alpha(lobe) < ALPHA_MIN_VALUE;
     !lobes.iter().any(delta)
 }
 

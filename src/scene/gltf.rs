@@ -247,21 +247,13 @@ impl Source {
             None => lobes.push(MaterialLobe {
                 model: "gltf_diffuse".into(),
                 roughness: None,
-                weights: self.weights(
-                    "gltf_diffuse",
-                    metallic,
-                    ["0.96 (1 − metallic) base_color", "0"],
-                ),
+                weights: self.weights("gltf_diffuse", metallic, ["0.96 (1 − metallic) base_color", "0"]),
             }),
         }
         lobes.push(MaterialLobe {
             model: "ggx".into(),
             roughness: Some(roughness),
-            weights: self.weights(
-                "ggx",
-                metallic,
-                ["0.04 (1 − metallic) + metallic base_color", "1"],
-            ),
+            weights: self.weights("ggx", metallic, ["0.04 (1 − metallic) + metallic base_color", "1"]),
         });
         // Texels and vertex colours are at most 1, and may be 0.
         let [low, high] = [f64::min, f64::max].map(|f| self.base_color.into_iter().reduce(f).unwrap_or(1.0));
