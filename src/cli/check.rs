@@ -20,8 +20,7 @@ use targets::Target;
 #[command(after_help = AFTER_HELP)]
 pub struct Args {
     /// A scene or recipe: every material and every basis in it
-    #[arg(value_name = "SCENE", required_unless_present_any = ["model", "wgsl"],
-          conflicts_with_all = ["model", "wgsl", "set"])]
+    #[arg(value_name = "SCENE", conflicts_with_all = ["model", "wgsl", "set"])]
     scene: Option<PathBuf>,
     /// Of the scene, only this material
     #[arg(long, value_name = "NAME", requires = "scene")]

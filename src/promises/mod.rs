@@ -33,6 +33,7 @@ mod sequence;
 mod sum;
 mod symmetry;
 
+pub use agreement::FAINT;
 pub use report::{Finding, Input, Report, Verdict};
 pub use sum::Sum;
 

@@ -2,11 +2,10 @@
 //! over θi and θe, at the parameters and the δφ of its worst input.
 
 use crate::axis::{Axis, Variable};
-use crate::check::VALUE_FLOOR;
 use crate::error::{Error, Result};
 use crate::files::{Format, Provenance};
 use crate::points::Angles;
-use crate::promises::{Finding, Parameter, Report, Subject};
+use crate::promises::{FAINT, Finding, Parameter, Report, Subject};
 use crate::storage::Storage;
 use crate::table::{ErrorKind, Table, TableError};
 use std::collections::BTreeMap;
@@ -49,7 +48,7 @@ fn furnace(subject: &mut dyn Subject, report: &Report) -> Result<Option<Table>> 
                 let value = between(&parameters[k], line as f64 / (LINES - 1) as f64);
                 let mut setting = base.clone();
                 setting[k] = value;
-                (format!("{} = {}", parameters[k].name, short(value)), setting)
+                (short(value), setting)
             })
             .unzip(),
     };
@@ -65,7 +64,8 @@ fn furnace(subject: &mut dyn Subject, report: &Report) -> Result<Option<Table>> 
         (names, by_angle.map(|at| largest[at]).collect())
     };
     let fixed = pinned(&parameters, &base, free);
-    Ok(Some(table("furnace", "ρ_dh", report, vec![theta], lines, values, fixed, None)))
+    let name = free.map_or("furnace".into(), |k| format!("furnace, a line for each {}", parameters[k].name));
+    Ok(Some(table(&name, "ρ_dh", report, vec![theta], lines, values, fixed, None)))
 }
 
 /// |f − reference| / reference, the largest of the channels.
@@ -83,8 +83,7 @@ fn errors(subject: &mut dyn Subject, report: &Report) -> Result<Option<Table>> {
     subject.evaluate(&base, &angles, &mut values)?;
     let error = |(angles, f): (&Angles, &[f32])| {
         let truth = subject.reference(&base, angles).unwrap_or_default();
-        let errors =
-            f.iter().zip(truth).map(|(&f, truth)| (f64::from(f) - truth).abs() / truth.max(VALUE_FLOOR));
+        let errors = f.iter().zip(truth).map(|(&f, truth)| (f64::from(f) - truth).abs() / truth.max(FAINT));
         errors.fold(0.0, f64::max)
     };
     let errors: Vec<_> = angles.iter().zip(values.chunks_exact(subject.channels())).map(error).collect();
@@ -146,13 +145,17 @@ fn table(
     }
 }
 
-/// The value at u in [0, 1] of a parameter's range.
+/// The value at u in [0, 1] of a parameter's range: even steps, of α in roughness, as lobes look.
 fn between(parameter: &Parameter, u: f64) -> f64 {
-    let Parameter { low, high, logarithmic, .. } = *parameter;
-    let value = if logarithmic { low * (high / low).powf(u) } else { low + u * (high - low) };
+    let Parameter { ref name, low, high, .. } = *parameter;
+    let value = match name.as_str() {
+        "alpha" => (low.sqrt() + u * (high.sqrt() - low.sqrt())).powi(2),
+        _ => low + u * (high - low),
+    };
     value.clamp(low, high)
 }
 
+/// What fits a legend.
 fn short(value: f64) -> String {
-    if value != 0.0 && value < 1e-3 { format!("{value:.1e}") } else { format!("{value:.3}") }
+    if value != 0.0 && value < 1e-3 { format!("{value:.0e}") } else { format!("{value:.3}") }
 }
