@@ -24,12 +24,15 @@ pub struct Sum<'a> {
     /// As given, for integrals; and the part of it that has values.
     whole: Vec<Parameter>,
     parameters: Vec<Parameter>,
-    lobes: Box<dyn Fn(&[f64]) -> Result<Vec<Lobe>> + 'a>,
+    lobes: LobesAt<'a>,
     declared: Vec<Declared>,
     points: Option<Points<'a>>,
     /// The lobes of the setting that was evaluated last.
     last: (Vec<f64>, Vec<Lobe>),
 }
+
+/// The lobes at a setting of the parameters.
+type LobesAt<'a> = Box<dyn Fn(&[f64]) -> Result<Vec<Lobe>> + 'a>;
 
 /// R, G and B, also where they are alike: the kernel of `gonio eval`, and so its bits.
 const CHANNELS: usize = 3;
@@ -89,7 +92,7 @@ impl<'a> Sum<'a> {
         name: String,
         evaluator: &'a Evaluator,
         whole: Vec<Parameter>,
-        lobes: Box<dyn Fn(&[f64]) -> Result<Vec<Lobe>> + 'a>,
+        lobes: LobesAt<'a>,
         violation: Option<Violation>,
     ) -> Result<Self> {
         let parameters = whole.iter().map(with_values).collect::<Result<Vec<_>>>()?;
