@@ -91,6 +91,10 @@ fn budget(text: &str) -> Result<u64, String> {
 }
 
 pub fn run(args: &Args) -> Result<()> {
+    // clap forgives a missing requirement that conflicts with what is there.
+    if args.wgsl.is_none() && (args.entry.is_some() || args.cosine || args.anisotropic) {
+        return Err(Error::input("--entry, --cosine and --anisotropic are for --wgsl FILE"));
+    }
     match (&args.scene, &args.model, &args.wgsl, &args.entry) {
         (Some(path), ..) => {
             let scene = scene::read(path)?;
