@@ -3,6 +3,7 @@
 
 mod requirements;
 
+pub(crate) use requirements::constant_lobes;
 pub use requirements::{Basis, MaterialPlan, Plan, Selection};
 
 use crate::axis::{Axis, Variable};

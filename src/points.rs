@@ -126,6 +126,22 @@ impl<'a> Points<'a> {
         Ok(Self { lobes: lobes.to_vec(), place })
     }
 
+    /// Other weights and roughnesses for the same models: as new ones would evaluate, without making them.
+    ///
+    /// # Errors
+    /// When the models or the channels differ.
+    pub fn set(&mut self, lobes: &[Lobe]) -> Result<()> {
+        let shape = |lobe: &Lobe| (lobe.model.name, lobe.weights.len());
+        if !self.lobes.iter().map(shape).eq(lobes.iter().map(shape)) {
+            return Err(Error::input("a list of points keeps its models and its channels"));
+        }
+        self.lobes.clone_from_slice(lobes);
+        if let Place::Device(points) = &mut self.place {
+            points.set(lobes);
+        }
+        Ok(())
+    }
+
     /// Numbers of a value.
     pub fn channels(&self) -> usize {
         self.lobes[0].weights.len()

@@ -150,7 +150,8 @@ fn scene(model: &str) -> Scene {
         roughness: Some(Distribution::constant(0.3)),
         weights: Weights::Constant([[0.5; 3], [0.0; 3]]),
     };
-    let materials = vec![Material { name: "gold".into(), lobes: vec![lobe], metallic: None }];
+    let materials =
+        vec![Material { name: "gold".into(), lobes: vec![lobe], metallic: None, base_color: None }];
     Scene { file: "test.toml".into(), materials, ..Scene::default() }
 }
 

@@ -14,7 +14,7 @@ use gonio::scene::{Distribution, Material, MaterialLobe, Scene, Weights};
 fn material(name: &str, model: &str, roughness: Option<Distribution>) -> Material {
     let lobe =
         MaterialLobe { model: model.into(), roughness, weights: Weights::Constant([[0.5; 3], [0.0; 3]]) };
-    Material { name: name.into(), lobes: vec![lobe], metallic: None }
+    Material { name: name.into(), lobes: vec![lobe], metallic: None, base_color: None }
 }
 
 fn scene(materials: Vec<Material>) -> Scene {

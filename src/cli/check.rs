@@ -1,71 +1,177 @@
 //! `gonio check`
 
+mod pictures;
+mod targets;
+
 use super::watch::Watch;
-use super::{HEADING, junit, print, print_json, tell};
+use super::{HEADING, junit, print, print_json, tell, warn};
+use crate::bake::Evaluator;
 use crate::error::{Error, Result};
 use crate::gpu::{Device, DeviceChoice, INSTALL, UserFunction, UserShader, directions};
-use crate::promises::{self, DEFAULT_BUDGET, Finding, Options, Parameter, Report, STEPS, Symmetry, Verdict};
+use crate::promises::{self, Finding, Input, Options, Parameter, Report, STEPS, Symmetry, Verdict};
+use crate::scene;
 use anstyle::{AnsiColor, Style};
 use serde_json::json;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
+use targets::Target;
 
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub struct Args {
+    /// A scene or recipe: every material and every basis in it
+    #[arg(value_name = "SCENE", conflicts_with_all = ["model", "wgsl", "set"])]
+    scene: Option<PathBuf>,
+    /// Of the scene, only this material
+    #[arg(long, value_name = "NAME", requires = "scene")]
+    material: Option<String>,
+    /// A model: lambert, gltf_diffuse, ggx or mirror
+    #[arg(long, value_name = "NAME", conflicts_with = "wgsl")]
+    model: Option<String>,
     /// A WGSL file with a BRDF of your own
-    #[arg(long, value_name = "FILE")]
-    wgsl: PathBuf,
+    #[arg(long, value_name = "FILE", requires = "entry")]
+    wgsl: Option<PathBuf>,
     /// Its function: (wi: vec3f, wo: vec3f, further f32 parameters) -> f32 or vec3f, in sr⁻¹. Both directions
     /// are unit vectors that point away from the surface, whose normal is +z
-    #[arg(long, value_name = "NAME")]
-    entry: String,
-    /// A parameter of the function: a value, or a range to check; every parameter needs one
+    #[arg(long, value_name = "NAME", requires = "wgsl")]
+    entry: Option<String>,
+    /// A parameter of the function, which needs a value or a range to check for each; or of the model, where
+    /// what is not set is checked over its whole range
     #[arg(long, value_name = "NAME=VALUE|LOW..HIGH")]
     set: Vec<String>,
     /// The function returns f cos θi: the cosine is divided out, θi = 90° taken at cos θi = 2⁻²⁴
-    #[arg(long)]
+    #[arg(long, requires = "wgsl")]
     cosine: bool,
     /// Do not expect isotropy or bilateral symmetry
-    #[arg(long)]
+    #[arg(long, requires = "wgsl")]
     anisotropic: bool,
-    /// Values to look at before the search. A count, so that no result depends on the clock
-    #[arg(long, value_name = "N", default_value_t = DEFAULT_BUDGET)]
+    /// Values to look at before the search, of each subject: 20000000 or 1e8. A count, so that no result
+    /// depends on the clock
+    #[arg(long, value_name = "N", default_value = "2e7", value_parser = budget)]
     budget: u64,
-    /// auto, or a part of an adapter's name
+    /// auto, or a part of an adapter's name; for scenes and models also cpu
     #[arg(long, value_name = "NAME", default_value = "auto")]
     device: DeviceChoice,
     /// Print JSON on stdout, and everything for people on stderr
     #[arg(long)]
     json: bool,
-    /// Write JUnit XML for CI
+    /// Write JUnit XML for CI: a test suite a subject
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
+    /// A folder for pictures, made if it is not there: ρ_dh against θi, and the error against the reference
+    #[arg(long, short, value_name = "DIR", conflicts_with = "wgsl")]
+    out: Option<PathBuf>,
 }
 
 const AFTER_HELP: &str = "\
 Examples:
+  gonio check scene.gltf
+  gonio check recipe.toml --material gold --out pictures
+  gonio check --model ggx --set alpha=1e-6..1 --set f0=0.04 --budget 1e8
   gonio check --wgsl brdf.wgsl --entry brdf
   gonio check --wgsl brdf.wgsl --entry brdf --set roughness=0.05..1 --set metallic=0 --junit check.xml
   gonio check --wgsl brdf.wgsl --entry shade --cosine --anisotropic --json
 
-Promises: finite, non-negative, reciprocity, isotropy, bilateral symmetry, and energy (ρ_dh ≤ 1). The
-worst input of each is printed as options of gonio eval, with every digit, and as the two vectors.
+Promises: finite, non-negative, reciprocity, isotropy, bilateral symmetry, agreement
+with the f64 reference (scenes and models), and energy (ρ_dh ≤ 1). The worst input of each is printed as a
+command to paste, with every digit; of a file of your own as options of gonio eval and the two vectors.
+What a format is known to break is declared: reported, and held to its bound.
 
-Exit codes: 0 every promise is kept, 1 one is not, 2 bad input, 3 no device, 130 interrupted";
+Exit codes: 0 every promise is kept, or broken as declared, 1 one is not, 2 bad input, 3 no device, 130 interrupted";
 
 /// Bold green, and bold red.
 const KEPT: Style = AnsiColor::Green.on_default().bold();
 const BROKEN: Style = AnsiColor::Red.on_default().bold();
 const DECLARED: Style = AnsiColor::Yellow.on_default().bold();
 
+/// A count, also as 1e8.
+fn budget(text: &str) -> Result<u64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("\"{text}\" is not a number"))?;
+    if (1.0..=1e12).contains(&value) { Ok(value as u64) } else { Err("give a count from 1 to 1e12".into()) }
+}
+
 pub fn run(args: &Args) -> Result<()> {
-    let file = args.wgsl.display().to_string();
-    let source = std::fs::read(&args.wgsl).map_err(Error::io("read", &args.wgsl))?;
+    // clap forgives a missing requirement that conflicts with what is there.
+    if args.wgsl.is_none() && (args.entry.is_some() || args.cosine || args.anisotropic) {
+        return Err(Error::input("--entry, --cosine and --anisotropic are for --wgsl FILE"));
+    }
+    match (&args.scene, &args.model, &args.wgsl, &args.entry) {
+        (Some(path), ..) => {
+            let scene = scene::read(path)?;
+            let (evaluator, line) = Evaluator::choose(&args.device)?;
+            scene.warnings.iter().for_each(|warning| warn(warning));
+            let targets = targets::scene(path, &scene, args.material.as_deref(), &evaluator)?;
+            own(args, targets, &evaluator, &line)
+        }
+        (_, Some(model), ..) => {
+            let (evaluator, line) = Evaluator::choose(&args.device)?;
+            own(args, vec![targets::model(args, model, &evaluator)?], &evaluator, &line)
+        }
+        (_, _, Some(path), Some(entry)) => shader(args, path, entry),
+        _ => Err(Error::input("give a SCENE, --model NAME, or --wgsl FILE and --entry NAME")),
+    }
+}
+
+/// Our own models, one subject after the other.
+fn own(args: &Args, targets: Vec<Target>, evaluator: &Evaluator, line: &str) -> Result<()> {
+    say(args, &format!("{HEADING}device{HEADING:#}  {line}"))?;
+    let watch = Watch::new(STEPS * targets.len());
+    let mut all = Vec::new();
+    for (k, Target { mut subject, command }) in targets.into_iter().enumerate() {
+        let start = Instant::now();
+        let report = promises::check(&mut subject, &args.options(), &watch)?;
+        let seconds = start.elapsed().as_secs_f64();
+        let has_values = |finding: &Finding| !finding.values.is_empty();
+        let eval = |f: &Finding| Some(format!("{command} {}", f.input.as_ref().filter(|_| has_values(f))?));
+        let inputs = report.findings.iter().map(eval).collect();
+        watch.hide(|| show_report(args, &report, seconds, &inputs))?;
+        if let Some(dir) = &args.out {
+            let plain = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
+            let stem = format!("{k}_{}", report.subject.chars().map(plain).collect::<String>());
+            for path in pictures::write(dir, &stem, &mut subject, &report)? {
+                watch.hide(|| say(args, &format!("{:15}{}", "", path.display())))?;
+            }
+        }
+        all.push(Checked { report, seconds, inputs });
+    }
+    watch.finish();
+    if let Some(path) = &args.junit {
+        junit::write(path, &all)?;
+    }
+    if args.json {
+        let subjects = all.iter().map(|checked| {
+            let findings = checked.report.findings.iter().zip(&checked.inputs).map(|(finding, eval)| {
+                let mut value = json!(finding);
+                if finding.input.is_some() {
+                    value["input"]["eval"] = json!(eval);
+                }
+                value
+            });
+            let Checked { report, seconds, .. } = checked;
+            json!({
+                "subject": report.subject, "evaluated": report.evaluated, "seconds": seconds,
+                "kept": report.is_kept(), "notes": report.notes, "findings": findings.collect::<Vec<_>>(),
+            })
+        });
+        print_json(&json!({
+            "device": device_json(evaluator),
+            "evaluated": all.iter().map(|checked| checked.report.evaluated).sum::<u64>(),
+            "seconds": all.iter().map(|checked| checked.seconds).sum::<f64>(),
+            "kept": all.iter().all(|checked| checked.report.is_kept()),
+            "subjects": subjects.collect::<Vec<_>>(),
+        }))?;
+    }
+    verdict(&all)
+}
+
+/// A user's own function.
+fn shader(args: &Args, path: &Path, entry: &str) -> Result<()> {
+    let file = path.display().to_string();
+    let source = std::fs::read(path).map_err(Error::io("read", path))?;
     let source = String::from_utf8(source).map_err(|e| {
         Error::input(format!("{file} is not text in UTF-8, from byte {}", e.utf8_error().valid_up_to()))
     })?;
-    let function = UserFunction::parse(&file, source, &args.entry)?;
+    let function = UserFunction::parse(&file, source, entry)?;
     let parameters = parameters(&function, &args.set)?;
 
     let (device, line) = Device::choose(&args.device)?;
@@ -79,36 +185,25 @@ pub fn run(args: &Args) -> Result<()> {
 
     let start = Instant::now();
     let watch = Watch::new(STEPS);
-    let report =
-        promises::check(&mut subject, &Options { budget: args.budget, ..Options::default() }, &watch);
+    let report = promises::check(&mut subject, &args.options(), &watch);
     watch.finish();
     let report = report?;
     let seconds = start.elapsed().as_secs_f64();
-
-    if let Some(path) = &args.junit {
-        junit::write(path, &report, seconds)?;
-    }
-    let say = |text: &str| {
-        if args.json {
-            tell(text);
-            return Ok(());
-        }
-        print(text)
+    let vectors = |input: &Input| directions(&input.angles, args.cosine);
+    let words = |input: &Input| {
+        let [wi, wo] = vectors(input).map(|[x, y, z]| format!("({x:?}, {y:?}, {z:?})"));
+        format!("{input}\n{:15}wi = {wi}, wo = {wo}", "")
     };
-    say(&format!("{HEADING}device{HEADING:#}  {line}"))?;
-    say(&format!(
-        "{HEADING}{}{HEADING:#}, {} pairs of directions in {seconds:.1} s",
-        report.subject, report.evaluated
-    ))?;
-    for finding in &report.findings {
-        say(&show(finding))?;
-        if let Some(input) = &finding.input {
-            let [wi, wo] =
-                directions(&input.angles, args.cosine).map(|[x, y, z]| format!("({x:?}, {y:?}, {z:?})"));
-            say(&format!("{:15}{input}", ""))?;
-            say(&format!("{:15}wi = {wi}, wo = {wo}", ""))?;
-        }
+    let inputs = report.findings.iter().map(|finding| finding.input.as_ref().map(words)).collect();
+
+    say(args, &format!("{HEADING}device{HEADING:#}  {line}"))?;
+    show_report(args, &report, seconds, &inputs)?;
+    let inputs = report.findings.iter().map(|f| f.input.as_ref().map(Input::to_string)).collect();
+    let checked = [Checked { report, seconds, inputs }];
+    if let Some(path) = &args.junit {
+        junit::write(path, &checked)?;
     }
+    let report = &checked[0].report;
     if args.json {
         let findings: Vec<_> = report
             .findings
@@ -116,7 +211,7 @@ pub fn run(args: &Args) -> Result<()> {
             .map(|finding| {
                 let mut value = json!(finding);
                 if let Some(input) = &finding.input {
-                    let [wi, wo] = directions(&input.angles, args.cosine);
+                    let [wi, wo] = vectors(input);
                     value["input"]["eval"] = json!(input.to_string());
                     value["input"]["wi"] = json!(wi);
                     value["input"]["wo"] = json!(wo);
@@ -130,7 +225,57 @@ pub fn run(args: &Args) -> Result<()> {
             "evaluated": report.evaluated, "seconds": seconds, "kept": report.is_kept(), "findings": findings,
         }))?;
     }
-    verdict(&report)
+    verdict(&checked)
+}
+
+/// A subject's report, how long it took, and the worst input of each finding to be pasted.
+pub(super) struct Checked {
+    pub report: Report,
+    pub seconds: f64,
+    pub inputs: Vec<Option<String>>,
+}
+
+impl Args {
+    fn options(&self) -> Options {
+        Options { budget: self.budget, ..Options::default() }
+    }
+}
+
+fn say(args: &Args, text: &str) -> Result<()> {
+    if args.json {
+        tell(text);
+        return Ok(());
+    }
+    print(text)
+}
+
+fn show_report(args: &Args, report: &Report, seconds: f64, inputs: &Vec<Option<String>>) -> Result<()> {
+    say(
+        args,
+        &format!(
+            "{HEADING}{}{HEADING:#}, {} pairs of directions in {seconds:.1} s",
+            report.subject, report.evaluated
+        ),
+    )?;
+    for note in &report.notes {
+        say(args, &format!("{:15}{note}", ""))?;
+    }
+    for (finding, input) in report.findings.iter().zip(inputs) {
+        say(args, &show(finding))?;
+        if let Some(input) = input {
+            say(args, &format!("{:15}{input}", ""))?;
+        }
+    }
+    Ok(())
+}
+
+fn device_json(evaluator: &Evaluator) -> serde_json::Value {
+    match evaluator {
+        Evaluator::Device(device) => {
+            json!({ "kind": device.kind(), "name": device.name(), "driver": device.driver() })
+        }
+        Evaluator::Cpu => json!({ "kind": "CPU", "name": "cpu", "driver": "f64" }),
+    }
 }
 
 /// A value or a range for each parameter of the function.
@@ -180,11 +325,14 @@ fn show(finding: &Finding) -> String {
 }
 
 /// An error where a promise is broken.
-fn verdict(report: &Report) -> Result<()> {
-    let broken: Vec<_> =
-        report.findings.iter().filter(|f| f.verdict == Verdict::Broken).map(|f| f.property).collect();
-    match broken[..] {
-        [] => Ok(()),
-        _ => Err(Error::Promise(format!("{} breaks {}", report.subject, broken.join(", ")))),
-    }
+fn verdict(all: &[Checked]) -> Result<()> {
+    let broken = |report: &Report| -> Vec<_> {
+        report.findings.iter().filter(|f| f.verdict == Verdict::Broken).map(|f| f.property).collect()
+    };
+    let words: Vec<_> = all
+        .iter()
+        .filter(|checked| !checked.report.is_kept())
+        .map(|Checked { report, .. }| format!("{} breaks {}", report.subject, broken(report).join(", ")))
+        .collect();
+    if words.is_empty() { Ok(()) } else { Err(Error::Promise(words.join("; "))) }
 }

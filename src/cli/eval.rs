@@ -10,7 +10,7 @@ use crate::models;
 use crate::plan::TablePlan;
 use crate::points::Angles;
 use crate::quantity::BRDF;
-use crate::scene;
+use crate::scene::{self, Scene};
 use std::f64::consts::PI;
 use std::path::PathBuf;
 
@@ -26,8 +26,8 @@ pub struct Args {
     /// A model; gonio models lists them
     #[arg(long, value_name = "NAME", required_unless_present = "scene")]
     model: Option<String>,
-    /// A parameter of the model, by its name in recipes; repeat for more
-    #[arg(long, value_name = "KEY=VALUE", requires = "model")]
+    /// A parameter of the model, by its name in recipes, or of what varies in the material; repeat for more
+    #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Zenith angle of incidence: radians, or degrees as 45deg
     #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true,
@@ -106,7 +106,7 @@ fn subject(args: &Args, angles: &Angles) -> Result<TablePlan> {
         Axis::listed(Variable::DeltaPhi, vec![angles.delta_phi().abs()])?,
     ];
     let (scene, name) = match (&args.scene, &args.material, &args.model) {
-        (Some(path), Some(name), _) => (scene::read(path)?, name.clone()),
+        (Some(path), Some(name), _) => (pinned(scene::read(path)?, name, &args.set)?, name.clone()),
         (_, _, Some(model)) => {
             let model = models::find(model)?.name;
             let mut lobe = format!("model = \"{model}\"");
@@ -133,6 +133,19 @@ fn toml(value: &str) -> String {
     let is_word = value.starts_with(|c: char| c.is_ascii_alphabetic())
         && value.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_');
     if is_word { format!("\"{value}\"") } else { value.to_owned() }
+}
+
+/// The scene, its material at one setting of what varies in it.
+fn pinned(mut scene: Scene, name: &str, sets: &[String]) -> Result<Scene> {
+    let setting = sets.iter().map(|set| {
+        let pair = set.split_once('=').and_then(|(key, value)| Some((key.into(), value.parse().ok()?)));
+        pair.ok_or_else(|| Error::input(format!("--set {set}: give KEY=VALUE, as in --set roughness=0.3")))
+    });
+    let setting = setting.collect::<Result<Vec<_>>>()?;
+    if let Some(material) = scene.materials.iter_mut().find(|material| material.name == name) {
+        *material = material.at(&setting)?;
+    }
+    Ok(scene)
 }
 
 /// Whether a value keeps what every BRDF promises.

@@ -39,6 +39,11 @@ impl Watch {
         Self { bar, start: Instant::now(), step: Mutex::new(Step { count: 0, share: 0.0 }), stop }
     }
 
+    /// Prints with the bar out of the way.
+    pub fn hide<T>(&self, print: impl FnOnce() -> T) -> T {
+        self.bar.suspend(print)
+    }
+
     /// Takes the bar away.
     pub fn finish(&self) {
         self.bar.finish_and_clear();

@@ -66,6 +66,13 @@ impl<'a> Points<'a> {
         Ok(Self { device, lobes, channels, factors: Vec::new(), slots: [slot(), slot()] })
     }
 
+    /// Other weights for the same models.
+    pub fn set(&mut self, lobes: &[Lobe]) {
+        for ((_, job), lobe) in self.lobes.iter_mut().zip(lobes) {
+            *job = Job::new(lobe, 1.0);
+        }
+    }
+
     /// Fills `values`, by setting, point and channel. A setting has an α for each lobe.
     pub fn evaluate(&mut self, settings: &[Vec<f64>], angles: &[Angles], values: &mut [f32]) -> Result<()> {
         let per_chunk = CHUNK / settings.len().clamp(1, SETTINGS);

@@ -32,8 +32,8 @@ pub struct Model {
     pub components: &'static [Component],
     /// Whether it takes a roughness (α = roughness²).
     pub has_roughness: bool,
-    /// The bound on ρ_dh = ∫ (A + B) cos θ dω that the model promises; 1 conserves energy, and
-    /// infinity is no promise.
+    /// The bound on ρ_dh = ∫ (A + B) cos θ dω that the model promises; 1 conserves energy, more is a
+    /// [`Violation`] that it declares, and infinity is no promise.
     pub rho_bound: f64,
     /// Its shader, part by part, in order.
     pub parts: &'static [Part],
@@ -44,6 +44,18 @@ pub struct Model {
     pub(crate) lobe: fn(&Pair, &Azimuth, alpha: f64) -> [f64; 2],
     /// The independent f64 reference.
     pub reference: Option<&'static dyn Reference>,
+}
+
+/// A promise of a BRDF that a model, or a format's way to add models up, is known to break: reported as such,
+/// and held to its bound.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Violation {
+    /// The promise, by its name in [`promises`](crate::promises).
+    pub property: &'static str,
+    /// What the worst value may be.
+    pub bound: f64,
+    /// Who says so.
+    pub source: &'static str,
 }
 
 /// A component of a model, and what a material weighs it with.
@@ -202,6 +214,12 @@ impl Model {
     /// Whether this is a delta: no values, only integrals.
     pub fn is_delta(&self) -> bool {
         matches!(self.integral, Integral::Delta(_))
+    }
+
+    /// The promise that it is known to break, if there is one.
+    pub fn violation(&self) -> Option<Violation> {
+        let Self { rho_bound: bound, source, .. } = *self;
+        (bound > 1.0).then_some(Violation { property: "energy", bound, source })
     }
 }
 

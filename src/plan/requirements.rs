@@ -418,7 +418,7 @@ fn material_table(
 }
 
 /// The lobes of a material that is the same everywhere; else why it is not.
-fn constant_lobes(material: &Material) -> Result<Vec<Lobe>, String> {
+pub(crate) fn constant_lobes(material: &Material) -> Result<Vec<Lobe>, String> {
     let lobe = |lobe: &crate::scene::MaterialLobe| {
         let Weights::Constant([a, b]) = &lobe.weights else {
             return Err("its weights are textured, so it has no single RGB table".to_string());

@@ -54,11 +54,11 @@ impl Rho {
     }
 }
 
-struct Place {
-    rho: Rho,
-    setting: Vec<f64>,
-    theta_i: f64,
-    phi_i: f64,
+pub(super) struct Place {
+    pub rho: Rho,
+    pub setting: Vec<f64>,
+    pub theta_i: f64,
+    pub phi_i: f64,
 }
 
 pub(super) fn check(
@@ -67,6 +67,7 @@ pub(super) fn check(
     tolerance: f64,
     observer: &dyn Observer,
 ) -> Result<Finding> {
+    observer.begin(NAME);
     let rules = Rules::new();
     let phis: &[f64] =
         if probe.subject.symmetry().isotropic { &[0.0] } else { &[0.0, 0.5, FRAC_PI_2, 2.2, PI, 5.1] };
@@ -123,7 +124,7 @@ fn climb(rules: &Rules, probe: &mut Probe, from: &Place, number: u64) -> Result<
     Ok(worst)
 }
 
-fn finding(probe: &Probe, most: Option<&Place>, least: f64, tolerance: f64) -> Finding {
+pub(super) fn finding(probe: &Probe, most: Option<&Place>, least: f64, tolerance: f64) -> Finding {
     let Some(place) = most else { return Finding::unseen(NAME, probe) };
     let Rho { value, estimate } = place.rho;
     let worst = Worst {
@@ -137,8 +138,9 @@ fn finding(probe: &Probe, most: Option<&Place>, least: f64, tolerance: f64) -> F
             phi_e: place.phi_i + PI,
         },
     };
+    let doubt = if estimate > 0.0 { format!(" ± {estimate:.0e}") } else { String::new() };
     let said = format!(
-        "ρ_dh from {least:.6} to {value:.6} ± {estimate:.0e}: {}",
+        "ρ_dh from {least:.6} to {value:.6}{doubt}: {}",
         match value - 1.0 {
             gain if gain > estimate + tolerance => format!("{:.3} % gained", 100.0 * gain),
             _ => format!("up to {:.3} % lost", 100.0 * (1.0 - least).max(0.0)),
@@ -160,11 +162,7 @@ impl Rules {
         self.0.iter().map(|[x, y]| 4 * x.len() * y.len()).sum()
     }
 
-    /// The subject's own integral where it has one, else the generic one.
     fn rho(&self, probe: &mut Probe, setting: &[f64], theta_i: f64, phi_i: f64) -> Result<Rho> {
-        if let Some(rho) = probe.subject.rho_dh(setting, theta_i)? {
-            return Ok(Rho { value: rho.into_iter().fold(f64::NEG_INFINITY, f64::max), estimate: 0.0 });
-        }
         let [(coarse, mut angles), (fine, more)] =
             [0, 1].map(|k| self.0[k].each_ref()).map(|rule| hemisphere(rule, theta_i, phi_i));
         angles.extend(more);

@@ -21,6 +21,7 @@
 //! than the spacing of the inputs, with nothing around it to follow, is found only by luck.
 
 mod agreement;
+mod albedo;
 mod bits;
 mod energy;
 mod inputs;
@@ -29,9 +30,12 @@ mod reciprocity;
 mod report;
 mod search;
 mod sequence;
+mod sum;
 mod symmetry;
 
+pub use agreement::FAINT;
 pub use report::{Finding, Input, Report, Verdict};
+pub use sum::Sum;
 
 use crate::bake::Observer;
 use crate::error::{Error, Result};
@@ -107,9 +111,21 @@ pub trait Subject {
         None
     }
 
-    /// ρ_dh by an integral of its own that is better than the generic one, where there is one.
-    fn rho_dh(&mut self, _setting: &[f64], _theta_i: f64) -> Result<Option<Vec<f64>>> {
+    /// ρ_dh by integrals of its own that are better than the generic one, where there are some: at each setting
+    /// and each θi, channels last.
+    fn rho_dh(&mut self, _settings: &[Vec<f64>], _thetas: &[f64]) -> Result<Option<Vec<f64>>> {
         Ok(None)
+    }
+
+    /// The ranges over which it integrates, in the order of [`Subject::parameters`]: wider where a limit is a
+    /// delta, which has integrals but no values.
+    fn integral_parameters(&self) -> &[Parameter] {
+        self.parameters()
+    }
+
+    /// Whether it has values at a setting: a delta has none, and is checked through its integrals.
+    fn has_values(&self, _setting: &[f64]) -> bool {
+        true
     }
 
     /// The symmetries that it promises.
@@ -131,6 +147,17 @@ pub trait Subject {
     /// The promises that it is known to break.
     fn declared(&self) -> &[Declared] {
         &[]
+    }
+
+    /// Whether the parameters' ranges can show a declared violation; if they can, its absence is a fault: the
+    /// declaration is wrong, or the check is blind.
+    fn shows(&self, _property: &str) -> bool {
+        true
+    }
+
+    /// What cannot be looked at, and why.
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
     }
 }
 
@@ -248,20 +275,27 @@ pub fn check(subject: &mut dyn Subject, options: &Options, observer: &dyn Observ
     if probe.has_reference() {
         properties.push(Box::new(agreement::Agreement::new(tolerances.agreement)));
     }
+    if !probe.has_values() {
+        properties.clear();
+    }
 
-    // Half of the values go to the integrals, the rest to each promise alike.
-    let inputs = Inputs::new(probe.parameters(), options.budget / 2 / properties.len() as u64);
+    // Half of the values go to the integrals unless the subject does them, the rest to each promise alike.
+    let values = if probe.has_integrals()? { options.budget } else { options.budget / 2 };
+    let inputs = Inputs::new(probe.parameters(), values / properties.len().max(1) as u64);
     let mut worst = Vec::new();
     for property in &mut properties {
         observer.begin(property.name());
         worst.push(search::hunt(property.as_mut(), &mut probe, &inputs, options.search, observer)?);
     }
-    observer.begin(energy::NAME);
-    let energy = energy::check(&mut probe, options, tolerances.energy, observer)?;
+    let energy = match albedo::check(&mut probe, options.search, tolerances.energy, observer)? {
+        Some(energy) => energy,
+        None => energy::check(&mut probe, options, tolerances.energy, observer)?,
+    };
 
     // Every value was looked at, whatever it was evaluated for: orbits and integrals too.
-    worst[0] = probe.non_finite.take().or(worst[0].take());
-    worst[1] = probe.most_negative.take().or(worst[1].take());
+    for (worst, seen) in worst.iter_mut().zip([probe.non_finite.take(), probe.most_negative.take()]) {
+        *worst = seen.or(worst.take());
+    }
     let mut findings: Vec<_> = properties
         .iter()
         .zip(worst)
@@ -269,7 +303,11 @@ pub fn check(subject: &mut dyn Subject, options: &Options, observer: &dyn Observ
         .chain([energy])
         .collect();
     for declared in &declared {
-        report::hold(&mut findings, declared)?;
+        report::hold(&mut findings, declared, probe.subject.shows(declared.property))?;
     }
-    Ok(Report { subject: probe.subject.name(), evaluated: probe.evaluated, findings })
+    for finding in &mut findings {
+        finding.evaluate(probe.subject)?;
+    }
+    let (subject, notes) = (probe.subject.name(), probe.subject.notes());
+    Ok(Report { subject, evaluated: probe.evaluated, findings, notes })
 }

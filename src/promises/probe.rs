@@ -62,6 +62,17 @@ impl<'a> Probe<'a> {
         self.subject.reference(&setting, &angles).is_some()
     }
 
+    /// Whether the subject has values where it is checked.
+    pub fn has_values(&self) -> bool {
+        let setting: Vec<_> = self.parameters().iter().map(|p| p.high).collect();
+        self.subject.has_values(&setting)
+    }
+
+    /// Whether the subject has integrals of its own, by asking for none of them.
+    pub fn has_integrals(&mut self) -> Result<bool> {
+        Ok(self.subject.rho_dh(&[], &[])?.is_some())
+    }
+
     /// The values at each pair, channels last.
     pub fn evaluate(&mut self, setting: &[f64], angles: &[Angles]) -> Result<Vec<f32>> {
         let mut values = Vec::with_capacity(angles.len() * self.channels);

@@ -2,7 +2,7 @@
 
 use super::probe::Probe;
 use super::search::Worst;
-use super::{Angles, Declared, Property};
+use super::{Angles, Declared, Property, Subject};
 use crate::error::{Error, Result};
 use serde::Serialize;
 use std::fmt;
@@ -16,6 +16,8 @@ pub struct Report {
     pub evaluated: u64,
     /// The promises, in the order of the table in the module's documentation.
     pub findings: Vec<Finding>,
+    /// What was not looked at, and why.
+    pub notes: Vec<String>,
 }
 
 /// A promise, and the input that is worst for it.
@@ -33,6 +35,8 @@ pub struct Finding {
     pub said: String,
     /// Where.
     pub input: Option<Input>,
+    /// f there, sr⁻¹, each channel; none where there are no values.
+    pub values: Vec<f32>,
     /// For a declared violation: who says so, or what is wrong with it.
     pub note: Option<String>,
 }
@@ -89,8 +93,19 @@ impl Finding {
             limit,
             said,
             input,
+            values: Vec::new(),
             note: None,
         }
+    }
+
+    /// Notes f at the worst input.
+    pub(super) fn evaluate(&mut self, subject: &mut dyn Subject) -> Result<()> {
+        let Some(input) = &self.input else { return Ok(()) };
+        let setting: Vec<_> = input.setting.iter().map(|&(_, value)| value).collect();
+        if subject.has_values(&setting) {
+            subject.evaluate(&setting, &[input.angles], &mut self.values)?;
+        }
+        Ok(())
     }
 
     /// Every value that it needs is NaN or infinite: nothing is kept.
@@ -100,8 +115,8 @@ impl Finding {
     }
 }
 
-/// Holds a declared violation to its bound, and to being there.
-pub(super) fn hold(findings: &mut [Finding], declared: &Declared) -> Result<()> {
+/// Holds a declared violation to its bound; and to being there, where the parameters can show it.
+pub(super) fn hold(findings: &mut [Finding], declared: &Declared, shows: bool) -> Result<()> {
     let finding = findings.iter_mut().find(|f| f.property == declared.property).ok_or_else(|| {
         Error::Internal(format!(
             "{} is declared broken, and is no promise of this subject",
@@ -109,6 +124,9 @@ pub(super) fn hold(findings: &mut [Finding], declared: &Declared) -> Result<()> 
         ))
     })?;
     let (verdict, note) = match (finding.verdict, finding.deviation) {
+        (Verdict::Kept, _) if !shows => {
+            (Verdict::Kept, "declared broken, which these parameters do not show")
+        }
         (Verdict::Kept, _) => (Verdict::Broken, "declared broken, and kept: take the declaration back"),
         (_, Some(deviation)) if deviation <= declared.bound => (Verdict::Declared, "as declared"),
         _ => (Verdict::Broken, "beyond the declared bound"),

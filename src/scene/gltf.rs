@@ -11,7 +11,7 @@ mod extensions;
 mod file;
 mod texels;
 
-use super::{Distribution, LeftOut, Material, MaterialLobe, Scene, Weights};
+use super::{Distribution, LeftOut, Material, MaterialLobe, Scene, Weights, metallic_roughness};
 use crate::error::{Error, Result};
 use ::gltf::json::{self, Root};
 use file::GltfFile;
@@ -247,23 +247,18 @@ impl Source {
             None => lobes.push(MaterialLobe {
                 model: "gltf_diffuse".into(),
                 roughness: None,
-                weights: self.weights(
-                    metallic,
-                    |c, m| [0.96 * (1.0 - m) * c, 0.0],
-                    ["0.96 (1 − metallic) base_color", "0"],
-                ),
+                weights: self.weights("gltf_diffuse", metallic, ["0.96 (1 − metallic) base_color", "0"]),
             }),
         }
         lobes.push(MaterialLobe {
             model: "ggx".into(),
             roughness: Some(roughness),
-            weights: self.weights(
-                metallic,
-                |c, m| [0.04 * (1.0 - m) + m * c, 1.0],
-                ["0.04 (1 − metallic) + metallic base_color", "1"],
-            ),
+            weights: self.weights("ggx", metallic, ["0.04 (1 − metallic) + metallic base_color", "1"]),
         });
-        Material { name: self.name.clone(), lobes, metallic: Some(metallic) }
+        // Texels and vertex colours are at most 1, and may be 0.
+        let [low, high] = [f64::min, f64::max].map(|f| self.base_color.into_iter().reduce(f).unwrap_or(1.0));
+        let base_color = Some([if self.base_color_varies { 0.0 } else { low }, high]);
+        Material { name: self.name.clone(), lobes, metallic: Some(metallic), base_color }
     }
 
     fn why_no_diffuse(&self, metallic: [f64; 2]) -> Option<&'static str> {
@@ -277,11 +272,11 @@ impl Source {
     }
 
     /// The weights (a, b), as numbers where colour and metalness are the same everywhere.
-    fn weights(&self, metallic: [f64; 2], ab: impl Fn(f64, f64) -> [f64; 2], words: [&str; 2]) -> Weights {
+    fn weights(&self, model: &str, metallic: [f64; 2], words: [&str; 2]) -> Weights {
         if self.base_color_varies || metallic[0] != metallic[1] {
             return Weights::Textured(words.map(Into::into));
         }
-        let ab = self.base_color.map(|c| ab(c, metallic[0]));
+        let ab = self.base_color.map(|c| metallic_roughness::weights(model, c, metallic[0]));
         Weights::Constant([ab.map(|[a, _]| a), ab.map(|[_, b]| b)])
     }
 }

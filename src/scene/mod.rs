@@ -4,8 +4,10 @@
 mod distribution;
 #[cfg(feature = "scene")]
 mod gltf;
+mod metallic_roughness;
 #[cfg(feature = "scene")]
 mod recipe;
+mod varying;
 
 pub use distribution::Distribution;
 #[cfg(feature = "scene")]
@@ -55,6 +57,8 @@ pub struct Material {
     pub lobes: Vec<MaterialLobe>,
     /// The metalness that the material takes, [min, max], where the scene's format has one.
     pub metallic: Option<[f64; 2]>,
+    /// [min, max] over the channels of the base colour, where the scene's format has one.
+    pub base_color: Option<[f64; 2]>,
 }
 
 /// One lobe of a material: a model and the weights of its components.

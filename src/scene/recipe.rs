@@ -59,7 +59,8 @@ fn material(item: Item) -> Result<Material> {
     if items.is_empty() {
         return Err(lobes.refuse("the list is empty; give at least one { model = …, … }"));
     }
-    Ok(Material { name, lobes: items.into_iter().map(lobe).collect::<Result<_>>()?, metallic: None })
+    let lobes = items.into_iter().map(lobe).collect::<Result<_>>()?;
+    Ok(Material { name, lobes, metallic: None, base_color: None })
 }
 
 /// `{ model = "ggx", roughness = 0.3, masking = "smith-separable", f0 = [1.0, 0.78, 0.34] }`

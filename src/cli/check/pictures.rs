@@ -1,0 +1,161 @@
+//! Pictures of a check: ρ_dh against θi for several parameters, and the relative error against the reference
+//! over θi and θe, at the parameters and the δφ of its worst input.
+
+use crate::axis::{Axis, Variable};
+use crate::error::{Error, Result};
+use crate::files::{Format, Provenance};
+use crate::points::Angles;
+use crate::promises::{FAINT, Finding, Parameter, Report, Subject};
+use crate::storage::Storage;
+use crate::table::{ErrorKind, Table, TableError};
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use std::path::{Path, PathBuf};
+
+/// Lines, and samples of θ.
+const LINES: usize = 6;
+const ANGLES: usize = 181;
+const SIDE: usize = 181;
+
+/// Writes `STEM.rho_dh.png`, and `STEM.error.png` where there are values; returns which.
+pub fn write(dir: &Path, stem: &str, subject: &mut dyn Subject, report: &Report) -> Result<Vec<PathBuf>> {
+    std::fs::create_dir_all(dir).map_err(Error::io("make", dir))?;
+    let mut written = Vec::new();
+    let tables = [furnace(subject, report)?, errors(subject, report)?];
+    for (table, what) in tables.into_iter().zip(["rho_dh", "error"]) {
+        let Some(table) = table else { continue };
+        let path = dir.join(format!("{stem}.{what}.png"));
+        let partial = path.with_added_extension("partial");
+        std::fs::write(&partial, Format::Png.encode(&table, &Provenance::new())?)
+            .map_err(Error::io("write", &path))?;
+        std::fs::rename(&partial, &path).map_err(Error::io("write", &path))?;
+        written.push(path);
+    }
+    Ok(written)
+}
+
+/// A line for each of some values of the first parameter that has a range, the others as at the largest
+/// ρ_dh; for each of R, G and B where none has.
+fn furnace(subject: &mut dyn Subject, report: &Report) -> Result<Option<Table>> {
+    let parameters = subject.integral_parameters().to_vec();
+    let Some(base) = setting(report, "energy") else { return Ok(None) };
+    let theta = Axis::natural(Variable::ThetaI, ANGLES)?;
+    let free = parameters.iter().position(|parameter| parameter.low < parameter.high);
+    let (names, settings): (Vec<_>, Vec<_>) = match free {
+        None => (Vec::new(), vec![base.clone()]),
+        Some(k) => (0..LINES)
+            .map(|line| {
+                let value = between(&parameters[k], line as f64 / (LINES - 1) as f64);
+                let mut setting = base.clone();
+                setting[k] = value;
+                (short(value), setting)
+            })
+            .unzip(),
+    };
+    let Some(rho) = subject.rho_dh(&settings, &theta.values)? else { return Ok(None) };
+    let channels = subject.channels();
+    let (lines, values): (_, Vec<_>) = if names.is_empty() {
+        (["R", "G", "B"].map(String::from).to_vec(), rho)
+    } else {
+        let largest: Vec<_> =
+            rho.chunks_exact(channels).map(|rho| rho.iter().copied().fold(0.0, f64::max)).collect();
+        let columns = theta.len();
+        let by_angle = (0..columns).flat_map(|j| (0..settings.len()).map(move |k| k * columns + j));
+        (names, by_angle.map(|at| largest[at]).collect())
+    };
+    let fixed = pinned(&parameters, &base, free);
+    let name = free.map_or("furnace".into(), |k| format!("furnace, a line for each {}", parameters[k].name));
+    Ok(Some(table(&name, "ρ_dh", report, vec![theta], lines, values, fixed, None)))
+}
+
+/// |f − reference| / reference, the largest of the channels.
+fn errors(subject: &mut dyn Subject, report: &Report) -> Result<Option<Table>> {
+    let Some(finding) = report.find("agreement") else { return Ok(None) };
+    let (Some(input), Some(base)) = (&finding.input, setting(report, "agreement")) else { return Ok(None) };
+    let delta_phi = input.angles.delta_phi();
+    let axes = [Variable::ThetaI, Variable::ThetaE].map(|variable| Axis::natural(variable, SIDE));
+    let axes = axes.into_iter().collect::<Result<Vec<_>>>()?;
+    let pairs = axes[0].values.iter().flat_map(|&i| axes[1].values.iter().map(move |&e| (i, e)));
+    let angles: Vec<_> = pairs
+        .map(|(theta_i, theta_e)| Angles { theta_i, phi_i: 0.0, theta_e, phi_e: PI + delta_phi })
+        .collect();
+    let mut values = Vec::new();
+    subject.evaluate(&base, &angles, &mut values)?;
+    let error = |(angles, f): (&Angles, &[f32])| {
+        let truth = subject.reference(&base, angles).unwrap_or_default();
+        let errors = f.iter().zip(truth).map(|(&f, truth)| (f64::from(f) - truth).abs() / truth.max(FAINT));
+        errors.fold(0.0, f64::max)
+    };
+    let errors: Vec<_> = angles.iter().zip(values.chunks_exact(subject.channels())).map(error).collect();
+    let mut fixed = pinned(subject.parameters(), &base, None);
+    fixed.insert("δφ [rad]".into(), delta_phi);
+    let channel = vec!["relative error".to_owned()];
+    Ok(Some(table("agreement", "error", report, axes, channel, errors, fixed, finding.deviation)))
+}
+
+/// The setting of a promise's worst input.
+fn setting(report: &Report, property: &str) -> Option<Vec<f64>> {
+    let Finding { input, .. } = report.find(property)?;
+    Some(input.as_ref()?.setting.iter().map(|&(_, value)| value).collect())
+}
+
+fn pinned(parameters: &[Parameter], setting: &[f64], but: Option<usize>) -> BTreeMap<String, f64> {
+    let names = parameters.iter().map(|parameter| parameter.name.clone());
+    let all = names.zip(setting.iter().copied()).enumerate();
+    all.filter(|(k, _)| Some(*k) != but).map(|(_, pair)| pair).collect()
+}
+
+#[allow(clippy::too_many_arguments)] // what a picture says
+fn table(
+    name: &str,
+    quantity: &str,
+    report: &Report,
+    axes: Vec<Axis>,
+    channels: Vec<String>,
+    values: Vec<f64>,
+    parameters: BTreeMap<String, f64>,
+    worst: Option<f64>,
+) -> Table {
+    let error = TableError {
+        kind: if worst.is_some() { ErrorKind::Relative } else { ErrorKind::Absolute },
+        floor: None,
+        estimate: None,
+        measured_max: worst,
+        measured_rms: None,
+        texels_checked: values.len(),
+        underflows: None,
+        interpolation: None,
+        worst: BTreeMap::new(),
+    };
+    Table {
+        name: name.into(),
+        quantity: quantity.into(),
+        unit: "1".into(),
+        subject: report.subject.clone(),
+        parameters,
+        axes,
+        channels,
+        values: values.into(),
+        rule: "gonio check".into(),
+        storage: Storage::F64,
+        bilinear: None,
+        precision: "as the device computes it".into(),
+        error,
+        seconds: 0.0,
+    }
+}
+
+/// The value at u in [0, 1] of a parameter's range: even steps, of α in roughness, as lobes look.
+fn between(parameter: &Parameter, u: f64) -> f64 {
+    let Parameter { ref name, low, high, .. } = *parameter;
+    let value = match name.as_str() {
+        "alpha" => (low.sqrt() + u * (high.sqrt() - low.sqrt())).powi(2),
+        _ => low + u * (high - low),
+    };
+    value.clamp(low, high)
+}
+
+/// What fits a legend.
+fn short(value: f64) -> String {
+    if value != 0.0 && value < 1e-3 { format!("{value:.0e}") } else { format!("{value:.3}") }
+}

@@ -1,0 +1,151 @@
+//! What `gonio check` checks of our own: a model, or every basis and material of a scene or recipe.
+
+use super::Args;
+use crate::axis::Variable;
+use crate::bake::Evaluator;
+use crate::error::{Error, Result};
+use crate::models::{self, Model};
+use crate::plan::{Lobe, constant_lobes};
+use crate::promises::{Parameter, Sum};
+use crate::scene::{self, Distribution, Scene, SubjectRequest};
+use std::path::Path;
+
+/// A subject, and the command that evaluates it, but for its parameters and directions.
+pub struct Target<'a> {
+    pub subject: Sum<'a>,
+    pub command: String,
+}
+
+/// `--model NAME` with `--set`: what is not set is checked over its whole range.
+pub fn model<'a>(args: &Args, name: &str, evaluator: &'a Evaluator) -> Result<Target<'a>> {
+    let model = models::find(name)?;
+    let (mut fixed, mut ranges) = (Vec::new(), Vec::new());
+    for set in &args.set {
+        let (key, value) = set.split_once('=').ok_or_else(|| {
+            Error::input(format!("--set {set}: give KEY=VALUE or KEY=LOW..HIGH, as in --set alpha=1e-6..1"))
+        })?;
+        let key = key.trim();
+        if fixed.iter().any(|(given, _)| *given == key) || ranges.iter().any(|r: &Parameter| r.name == key) {
+            return Err(Error::input(format!("--set {set}: \"{key}\" is given twice")));
+        }
+        match value.split_once("..") {
+            None => fixed.push((key, value)),
+            Some((low, high)) => {
+                let number = |text: &str| {
+                    text.trim().parse().map_err(|_| {
+                        Error::input(format!("--set {set}: \"{text}\" is not a number; give {key}=LOW..HIGH"))
+                    })
+                };
+                let range = Parameter::new(key, number(low)?, number(high)?);
+                ranges.push(range.map_err(|e| e.at(format!("--set {set}")))?);
+            }
+        }
+    }
+    let given = |key: &str| {
+        fixed.iter().any(|(given, _)| *given == key)
+            || ranges.iter().any(|range: &Parameter| range.name == key)
+    };
+    let mut whole = Vec::new();
+    if model.has_roughness && !given("alpha") && !given("roughness") {
+        whole.push(Parameter::new("alpha", models::ALPHA_MIN_VALUE, 1.0)?);
+    }
+    for component in model.components.iter().filter(|component| !given(component.weight)) {
+        whole.push(Parameter::new(component.weight, 0.0, 1.0)?);
+    }
+    ranges.extend(whole);
+
+    // The recipe's own reader says what is wrong with a name or a value: at both ends of the ranges.
+    let mut lobe = None;
+    for end in [|p: &Parameter| p.low, |p: &Parameter| p.high] {
+        let mut text = format!("model = \"{}\"", model.name);
+        fixed.iter().for_each(|(key, value)| text += &format!(", {key} = {value}"));
+        ranges.iter().for_each(|range| text += &format!(", {} = {:?}", range.name, end(range)));
+        let text = format!("[materials.{}]\nlobes = [{{ {text} }}]\n", model.name);
+        let scene = scene::parse_recipe("--set".as_ref(), text.as_bytes())?;
+        if !scene.tables.is_empty() || scene.materials.len() != 1 || scene.materials[0].lobes.len() != 1 {
+            return Err(Error::input("--set: give one value or range of one parameter each"));
+        }
+        lobe = constant_lobes(&scene.materials[0]).map_err(Error::input)?.pop();
+    }
+    let lobe = lobe.ok_or_else(|| Error::Internal("a model without a lobe".into()))?;
+    let mut command = format!("gonio eval --model {}", model.name);
+    for (key, value) in &fixed {
+        command += &format!(" --set {}", quoted(&format!("{key}={value}")));
+    }
+    Ok(Target { subject: Sum::model(evaluator, lobe, ranges)?, command })
+}
+
+/// Every basis, over all roughnesses that the scene gives it and all weights, and every material.
+pub fn scene<'a>(
+    path: &Path,
+    scene: &'a Scene,
+    material: Option<&str>,
+    evaluator: &'a Evaluator,
+) -> Result<Vec<Target<'a>>> {
+    if let Some(name) = material
+        && !scene.materials.iter().any(|material| material.name == name)
+    {
+        let names: Vec<_> = scene.materials.iter().map(|material| material.name.as_str()).collect();
+        return Err(Error::input(format!(
+            "{}: no material \"{name}\"; there are {}",
+            path.display(),
+            names.join(", ")
+        )));
+    }
+    let mut targets = Vec::new();
+    if material.is_none() {
+        for model in models::MODELS {
+            if let Some(range) = used(scene, model) {
+                targets.push(basis(model, range, evaluator)?);
+            }
+        }
+    }
+    let wanted = scene.materials.iter().filter(|m| material.is_none_or(|name| m.name == name));
+    for material in wanted {
+        let (file, name) = (quoted(&path.display().to_string()), quoted(&material.name));
+        let subject = Sum::material(evaluator, material)?;
+        targets.push(Target { subject, command: format!("gonio eval {file} --material {name}") });
+    }
+    if targets.is_empty() {
+        return Err(Error::input(format!("{}: it has no material and no model to check", path.display())));
+    }
+    Ok(targets)
+}
+
+fn basis<'a>(model: &'static Model, roughness: [f64; 2], evaluator: &'a Evaluator) -> Result<Target<'a>> {
+    let mut parameters = Vec::new();
+    if model.has_roughness {
+        let [low, high] = roughness;
+        parameters.push(Parameter::new("roughness", low, high)?);
+    }
+    for component in model.components {
+        parameters.push(Parameter::new(component.weight, 0.0, 1.0)?);
+    }
+    let lobe = Lobe { model, roughness: model.has_roughness.then_some(1.0), weights: vec![[0.0; 2]; 3] };
+    let subject = Sum::model(evaluator, lobe, parameters)?;
+    Ok(Target { subject, command: format!("gonio eval --model {}", model.name) })
+}
+
+/// The roughnesses that the scene's materials and tables give a model, if it uses it.
+fn used(scene: &Scene, model: &Model) -> Option<[f64; 2]> {
+    let lobes = scene.materials.iter().flat_map(|m| &m.lobes).filter(|lobe| lobe.model == model.name);
+    let range = |d: &Distribution| [d.min(), d.max()];
+    let of_lobes = lobes.map(|lobe| lobe.roughness.as_ref().map_or([1.0; 2], range));
+    let of_tables = scene.tables.iter().filter_map(|table| match &table.subject {
+        SubjectRequest::Basis { model: name, roughness } if name == model.name => {
+            let axis = table.axes.iter().find(|axis| axis.variable == Variable::Roughness);
+            Some(roughness.map(|r| [r; 2]).or(axis.map(|axis| axis.range)).unwrap_or([0.0, 1.0]))
+        }
+        _ => None,
+    });
+    of_lobes.chain(of_tables).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+}
+
+/// A word that a POSIX shell reads as it is.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=+,:%@".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', r"'\''"))
+}

@@ -1,0 +1,298 @@
+//! Our own models as subjects: a sum of lobes, with parameters that are fixed or have a range.
+
+use super::{Angles, Declared, Parameter, Subject, Tolerances};
+use crate::axis::{Axis, Variable};
+use crate::bake::{Evaluator, Stages, Unobserved};
+use crate::check::Check;
+use crate::error::{Error, Result};
+use crate::models::{ALPHA_MIN_VALUE, Model, Violation};
+use crate::plan::{INTEGRAL_F32, Lobe, TablePlan, VALUE_F32, constant_lobes};
+use crate::points::Points;
+use crate::quantity::RHO_DH;
+use crate::reference;
+use crate::scene::Material;
+use crate::table::Table;
+use std::f64::consts::FRAC_PI_2;
+
+/// A sum of weighted lobes: a material, or a model alone.
+///
+/// Where its parameters reach a delta, it has no values but integrals: values are then checked over the rest
+/// of the range.
+pub struct Sum<'a> {
+    name: String,
+    evaluator: &'a Evaluator,
+    /// As given, for integrals; and the part of it that has values.
+    whole: Vec<Parameter>,
+    parameters: Vec<Parameter>,
+    lobes: LobesAt<'a>,
+    declared: Vec<Declared>,
+    points: Option<Points<'a>>,
+    /// The lobes of the setting that was evaluated last.
+    last: (Vec<f64>, Vec<Lobe>),
+}
+
+/// The lobes at a setting of the parameters.
+type LobesAt<'a> = Box<dyn Fn(&[f64]) -> Result<Vec<Lobe>> + 'a>;
+
+/// R, G and B, also where they are alike: the kernel of `gonio eval`, and so its bits.
+const CHANNELS: usize = 3;
+/// The perceptual roughness from which a lobe has values.
+const ROUGHNESS_MIN: f64 = 1e-3;
+
+impl<'a> Sum<'a> {
+    /// A material over all that varies in it.
+    ///
+    /// # Errors
+    /// When a model is unknown, or the device fails.
+    pub fn material(evaluator: &'a Evaluator, material: &'a Material) -> Result<Self> {
+        let varying = material.varying();
+        let names: Vec<_> = varying.iter().map(|(name, _)| name.clone()).collect();
+        let parameters = varying.into_iter().map(|(name, [low, high])| Parameter::new(name, low, high));
+        let lobes = move |setting: &[f64]| {
+            let setting: Vec<_> = names.iter().cloned().zip(setting.iter().copied()).collect();
+            constant_lobes(&material.at(&setting)?).map_err(Error::input)
+        };
+        let parameters = parameters.collect::<Result<_>>()?;
+        Self::new(material.name.clone(), evaluator, parameters, Box::new(lobes), material.violation())
+    }
+
+    /// A model over some of its parameters, by their names in recipes (`roughness` or `alpha`, and the weights
+    /// of its components); `lobe` has the rest.
+    ///
+    /// # Errors
+    /// When the model has no parameter of such a name, or the device fails.
+    pub fn model(evaluator: &'a Evaluator, lobe: Lobe, parameters: Vec<Parameter>) -> Result<Self> {
+        let model = lobe.model;
+        let known = |name: &str| {
+            model.has_roughness && matches!(name, "roughness" | "alpha")
+                || model.components.iter().any(|component| component.weight == name)
+        };
+        if let Some(unknown) = parameters.iter().find(|parameter| !known(&parameter.name)) {
+            return Err(Error::input(format!("{} has no parameter \"{}\"", model.name, unknown.name)));
+        }
+        let names: Vec<_> = parameters.iter().map(|parameter| parameter.name.clone()).collect();
+        let lobes = move |setting: &[f64]| {
+            let mut lobe = lobe.clone();
+            for (name, &value) in names.iter().zip(setting) {
+                match name.as_str() {
+                    "roughness" => lobe.roughness = Some(value),
+                    "alpha" => lobe.roughness = Some(value.sqrt()),
+                    name => {
+                        let k = model.components.iter().position(|c| c.weight == name).unwrap_or(0);
+                        lobe.weights.iter_mut().for_each(|weights| weights[k] = value);
+                    }
+                }
+            }
+            Ok(vec![lobe])
+        };
+        Self::new(model.name.into(), evaluator, parameters, Box::new(lobes), model.violation())
+    }
+
+    fn new(
+        name: String,
+        evaluator: &'a Evaluator,
+        whole: Vec<Parameter>,
+        lobes: LobesAt<'a>,
+        violation: Option<Violation>,
+    ) -> Result<Self> {
+        let parameters = whole.iter().map(with_values).collect::<Result<Vec<_>>>()?;
+        let setting: Vec<_> = parameters.iter().map(|parameter| parameter.high).collect();
+        let first = lobes(&setting)?;
+        let points = if has_values(&first) { Some(Points::new(evaluator, &first)?) } else { None };
+        let declared = violation.map(|Violation { property, bound, source }| Declared {
+            property,
+            bound,
+            citation: source.into(),
+        });
+        let declared = declared.into_iter().collect();
+        Ok(Self { name, evaluator, whole, parameters, lobes, declared, points, last: (setting, first) })
+    }
+
+    /// ρ_dh by the reference, the largest of the channels.
+    fn reference_rho(&self, setting: &[f64], theta_i: f64) -> Option<f64> {
+        let mut rho = [0.0; CHANNELS];
+        for lobe in &(self.lobes)(setting).ok()? {
+            let [a, b] = lobe.model.reference?.rho_dh(theta_i.cos().max(0.0), alpha(lobe));
+            for (rho, [weight_a, weight_b]) in rho.iter_mut().zip(&lobe.weights) {
+                *rho += weight_a * a + weight_b * b;
+            }
+        }
+        rho.into_iter().reduce(f64::max)
+    }
+
+    /// ρ_dh of one component model over all the roughnesses and angles that are asked for.
+    fn bake(&self, model: &'static Model, roughnesses: Vec<f64>, thetas: Vec<f64>) -> Result<Table> {
+        let rough = model.has_roughness.then(|| Axis::listed(Variable::Roughness, roughnesses));
+        let axes = rough.into_iter().chain([Axis::listed(Variable::ThetaI, thetas)]);
+        let plan = TablePlan::basis(model.name, &RHO_DH, model, None, axes.collect::<Result<_>>()?)?;
+        let plan = plan.with_tolerance(INTEGRAL_F32);
+        self.evaluator.bake(&plan, Check::Sample(0), &mut Stages::default(), &Unobserved)
+    }
+}
+
+impl Subject for Sum<'_> {
+    fn name(&self) -> String {
+        self.name.clone()
+    }
+
+    fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    fn integral_parameters(&self) -> &[Parameter] {
+        &self.whole
+    }
+
+    fn channels(&self) -> usize {
+        CHANNELS
+    }
+
+    fn has_values(&self, setting: &[f64]) -> bool {
+        self.points.is_some() && (self.lobes)(setting).is_ok_and(|lobes| has_values(&lobes))
+    }
+
+    fn evaluate(&mut self, setting: &[f64], angles: &[Angles], out: &mut Vec<f32>) -> Result<()> {
+        let points = self.points.as_mut();
+        let points = points.ok_or_else(|| Error::input(format!("{} is a delta: no values", self.name)))?;
+        if self.last.0 != setting {
+            self.last = (setting.to_vec(), (self.lobes)(setting)?);
+        }
+        points.set(&self.last.1)?;
+        let mut values = Vec::new();
+        points.evaluate(angles, &mut values)?;
+        out.append(&mut values);
+        Ok(())
+    }
+
+    fn reference(&self, setting: &[f64], angles: &Angles) -> Option<Vec<f64>> {
+        let at = reference::Angles {
+            theta_i: angles.theta_i,
+            theta_e: angles.theta_e,
+            delta_phi: angles.delta_phi(),
+        };
+        let new;
+        let lobes = match self.last.0 == setting {
+            true => &self.last.1,
+            false => {
+                new = (self.lobes)(setting).ok()?;
+                &new
+            }
+        };
+        let mut f = vec![0.0; CHANNELS];
+        for lobe in lobes {
+            let [a, b] = lobe.model.reference?.brdf(&at, alpha(lobe))?;
+            for (f, [weight_a, weight_b]) in f.iter_mut().zip(&lobe.weights) {
+                *f += weight_a * a + weight_b * b;
+            }
+        }
+        Some(f)
+    }
+
+    /// By the tables that a bake makes: ρ_dh of each model, at the tolerance that f32 has.
+    fn rho_dh(&mut self, settings: &[Vec<f64>], thetas: &[f64]) -> Result<Option<Vec<f64>>> {
+        let sums = settings.iter().map(|setting| (self.lobes)(setting)).collect::<Result<Vec<_>>>()?;
+        let mut rho = vec![0.0; settings.len() * thetas.len() * CHANNELS];
+        for k in 0..sums.first().map_or(0, Vec::len) {
+            let lobes: Vec<_> = sums.iter().map(|lobes| &lobes[k]).collect();
+            let roughness = |lobe: &Lobe| lobe.roughness.unwrap_or(0.0);
+            let roughnesses = sorted(lobes.iter().map(|lobe| roughness(lobe)));
+            let columns = sorted(thetas.iter().copied());
+            let model = lobes[0].model;
+            let table = self.bake(model, roughnesses.clone(), columns.clone())?;
+            for (lobe, rho) in lobes.iter().zip(rho.chunks_exact_mut(thetas.len() * CHANNELS)) {
+                let row = if model.has_roughness { place(&roughnesses, roughness(lobe)) } else { 0 };
+                for (&theta, rho) in thetas.iter().zip(rho.chunks_exact_mut(CHANNELS)) {
+                    let texel = table.texel(row * columns.len() + place(&columns, theta));
+                    for (rho, weights) in rho.iter_mut().zip(&lobe.weights) {
+                        *rho += weights.iter().zip(&texel).map(|(weight, value)| weight * value).sum::<f64>();
+                    }
+                }
+            }
+        }
+        Ok(Some(rho))
+    }
+
+    /// Values as their f32 budget has it. Everything is evaluated from δφ, whose sign and turns are exact, so
+    /// that symmetries cost nothing, and an exchange of ωi and ωe no more than sums in another order.
+    /// Each lobe's integral is off by [`INTEGRAL_F32`] for A and for B.
+    fn tolerances(&self) -> Tolerances {
+        Tolerances {
+            reciprocity: 1e-6,
+            isotropy: 1e-6,
+            bilateral: 0.0,
+            agreement: VALUE_F32,
+            energy: 2.0 * INTEGRAL_F32 * self.last.1.len() as f64,
+        }
+    }
+
+    fn declared(&self) -> &[Declared] {
+        &self.declared
+    }
+
+    /// Whether these parameters can show a declared gain of energy is for the reference to say. ρ_dh is linear
+    /// in each weight, so its maximum over weights is at a corner of the ranges; of the roughness both ends are
+    /// tried, and θi on a list. Where the reference gains more than the device's tolerance there, the device
+    /// must too.
+    fn shows(&self, _property: &str) -> bool {
+        let free: Vec<_> = self.whole.iter().collect();
+        (0..1usize << free.len().min(8)).any(|corner| {
+            let end = |(k, p): (usize, &&Parameter)| if corner >> k & 1 == 1 { p.high } else { p.low };
+            let setting: Vec<_> = free.iter().enumerate().map(end).collect();
+            let thetas = [0.0, 60.0, 80.0, 87.0, 89.5].map(f64::to_radians).into_iter().chain([FRAC_PI_2]);
+            thetas.into_iter().any(|theta| {
+                self.reference_rho(&setting, theta)
+                    .is_some_and(|rho| rho > 1.0 + 2.0 * self.tolerances().energy)
+            })
+        })
+    }
+
+    fn notes(&self) -> Vec<String> {
+        if self.points.is_none() {
+            return vec!["a delta has no values: it is checked through its integrals alone".into()];
+        }
+        let clipped = self.parameters.iter().zip(&self.whole).filter(|(values, whole)| values != whole);
+        clipped
+            .map(|(values, whole)| {
+                let Parameter { name, low, .. } = values;
+                format!(
+                    "{name} from {} to {low} is a delta, without values: checked through its integrals alone",
+                    whole.low
+                )
+            })
+            .collect()
+    }
+}
+
+fn alpha(lobe: &Lobe) -> f64 {
+    if lobe.model.has_roughness { lobe.roughness.map_or(0.0, |r| r * r) } else { 0.0 }
+}
+
+fn has_values(lobes: &[Lobe]) -> bool {
+    let delta =
+        |lobe: &Lobe| lobe.model.is_delta() || lobe.model.has_roughness && alpha(lobe) < ALPHA_MIN_VALUE;
+    !lobes.iter().any(delta)
+}
+
+/// The part of a parameter's range that has values.
+fn with_values(parameter: &Parameter) -> Result<Parameter> {
+    let Parameter { name, low, high, .. } = parameter;
+    let least = match name.as_str() {
+        "alpha" => ALPHA_MIN_VALUE,
+        name if name.ends_with("roughness") => ROUGHNESS_MIN,
+        _ => return Ok(parameter.clone()),
+    };
+    if *high < least { Ok(parameter.clone()) } else { Parameter::new(name, low.max(least), *high) }
+}
+
+/// Increasing, each once.
+fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut values: Vec<_> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    values
+}
+
+/// The index of one of them.
+fn place(values: &[f64], value: f64) -> usize {
+    values.partition_point(|&v| v < value)
+}
