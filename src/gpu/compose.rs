@@ -46,8 +46,9 @@ pub enum Kernel {
     MultiplyAdd,
 }
 
-/// Room for the rules of Gauss–Legendre that tables of coarse tolerances take: all from 1 node to 44.
-pub(super) const COARSE_NODES: usize = 1024;
+/// Room for the rules of Gauss–Legendre that tables of coarse tolerances take, which a test of the models holds: 64 KiB in
+/// f64, what every device binds.
+pub(super) const COARSE_NODES: usize = 2048;
 
 /// Rows and quads of azimuths that one dispatch of values takes: 32 bytes each in a uniform buffer, of which
 /// every device binds 64 KiB.

@@ -2,7 +2,7 @@
 
 use super::baker::{Baker, count};
 use super::compose::{COARSE_NODES, Kernel, VALUE_WINDOW};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::models::{ALPHA_MIN_INTEGRAL, Model, SlopeCounts, is_fine};
 use crate::pair::{Azimuth, Pair};
 use crate::plan::{Lobe, Precision};
@@ -157,6 +157,9 @@ impl Stage {
                 };
                 let tiles: Vec<_> = work.tiles.iter().map(|tile| tile.map(side)).collect();
                 let nodes: Vec<_> = work.nodes.iter().map(|node| [node.x, node.weight, 0.0, 0.0]).collect();
+                if !is_fine(work.tolerance) && nodes.len() > COARSE_NODES {
+                    return Err(Error::Internal(format!("{} nodes of coarse rules", nodes.len())));
+                }
                 let (kernel, nodes) = match is_fine(work.tolerance) {
                     false => (Kernel::Slopes, upload.uniforms(&nodes, COARSE_NODES)),
                     true => (Kernel::FineSlopes, upload.reals(nodes.as_flattened())),
