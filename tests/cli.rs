@@ -755,13 +755,14 @@ fn eval_takes_materials() {
 fn eval_refuses_with_the_valid_words() {
     let demo = demo();
     let demo = demo.to_str().unwrap();
-    let cases: [(&[&str], &str, &[&str]); 14] = [
+    let cases: [(&[&str], &str, &[&str]); 15] = [
         (&["--model=phong"], "0", &["\"phong\"", "lambert", "gltf_diffuse", "ggx", "mirror"]),
         (&["--model=my model"], "0", &["\"my model\"", "lambert", "gltf_diffuse", "ggx", "mirror"]),
         (&["--model=ggx"], "0", &["roughness", "alpha"]),
         (&["--model=ggx", "--set=shiny=1"], "0", &["shiny", "roughness", "alpha", "f0", "f90"]),
         (&["--model=ggx", "--set=roughness=2"], "0", &["roughness", "[0, 1]"]),
         (&["--model=ggx", "--set=roughness=nan"], "0", &["roughness", "[0, 1]"]),
+        (&["--model=ggx", "--set=roughness=rough"], "0", &["roughness", "number"]),
         (&["--model=ggx", "--set=roughness"], "0", &["KEY=VALUE"]),
         (&["--model=ggx", "--set=roughness=0"], "0", &["delta", "0.001"]),
         (&["--model=mirror"], "0", &["mirror", "delta"]),
@@ -769,7 +770,7 @@ fn eval_refuses_with_the_valid_words() {
         (&["--model=lambert", "--set=albedo=1"], "-0.1", &["theta_i", "outside", "1.570796"]),
         (&["--model=lambert", "--set=albedo=1"], "nan", &["--theta-i", "not finite"]),
         (&[demo, "--material=cheese"], "0", &["demo.gltf", "worn paint", "gold", "clay"]),
-        (&[demo, "--material=worn paint"], "0", &["worn paint", "textured"]),
+        (&[demo, "--material=worn paint"], "0", &["worn paint", "varies", "--set roughness"]),
     ];
     for (arguments, theta_i, words) in cases {
         let run = eval(arguments, theta_i, "0");

@@ -36,15 +36,15 @@ fn bake(plan: &TablePlan, check: Check) -> gonio::Result<Table> {
 #[test]
 fn files_hold_the_nearest_representable_value() {
     let exact = dfg(sqrt_nodes(Variable::Mu, 9), sqrt_nodes(Variable::Roughness, 7));
-    let exact = bake(&exact, Check::Sample(0)).unwrap();
+    let exact = bake(&exact.with_tolerance(1e-6), Check::Sample(0)).unwrap();
     for storage in [Storage::F16, Storage::Unorm16] {
         let plan = dfg(sqrt_nodes(Variable::Mu, 9), sqrt_nodes(Variable::Roughness, 7)).with_storage(storage);
         let table = bake(&plan, Check::All).unwrap();
-        // The rules differ in their tolerance, so a value near a tie may fall to either side.
+        // The rule of a stored table may be off by a tenth of its tolerance.
         let step =
             |x: f64| if storage == Storage::F16 { x.max(1e-6) * 2f64.powi(-11) } else { 0.5 / 65535.0 };
         for (stored, value) in table.values.iter().zip(exact.values.iter()) {
-            assert!((stored - value).abs() <= step(value) + 2e-4, "{storage:?}: {stored} for {value}");
+            assert!((stored - value).abs() <= step(value) + 1e-4 + 1e-6, "{storage:?}: {stored} for {value}");
         }
         let npy = Format::Npy.encode(&table, &Provenance::new()).unwrap();
         let (descr, shape, bytes) = readers::npy_raw(&npy).unwrap();

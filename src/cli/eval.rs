@@ -130,7 +130,8 @@ fn subject(args: &Args, angles: &Angles) -> Result<TablePlan> {
 
 /// A value as TOML: a word needs no quotes on a command line.
 fn toml(value: &str) -> String {
-    let is_word = value.starts_with(|c: char| c.is_ascii_alphabetic())
+    let is_word = !matches!(value, "nan" | "inf" | "true" | "false")
+        && value.starts_with(|c: char| c.is_ascii_alphabetic())
         && value.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_');
     if is_word { format!("\"{value}\"") } else { value.to_owned() }
 }

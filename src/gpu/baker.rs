@@ -86,6 +86,8 @@ const INVOCATIONS_PER_DISPATCH: usize = 1 << 21;
 /// Bytes of a tile's result, and of the raw integrals behind it.
 const TILE_BYTES: usize = 1 << 25;
 const WORKGROUP: usize = 64;
+/// 32 a workgroup of values, of which there are at most 65,535.
+const ROWS_PER_DISPATCH: usize = 1 << 20;
 
 impl Layout {
     pub fn new(table: &TablePlan, precision: Precision) -> Self {
@@ -289,7 +291,8 @@ impl Baker {
             let columns = VALUE_WINDOW.min(stage.per_unit - quad);
             let (offset, size) = (quad as u64 * 32, std::num::NonZeroU64::new(BYTES));
             let window = wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: quads, offset, size });
-            let rows_per_step = (EVALUATIONS_PER_DISPATCH / (columns * stage.cost)).max(1);
+            let rows_per_step =
+                (EVALUATIONS_PER_DISPATCH / (columns * stage.cost)).clamp(1, ROWS_PER_DISPATCH);
             for row in (0..units.len()).step_by(rows_per_step) {
                 let rows_here = rows_per_step.min(units.len() - row);
                 let job = Job {
