@@ -26,10 +26,8 @@
 //! | [`atlas`] | what f32 loses against f64, by model and decade of α; the published forms of GGX | how values are computed |
 //! | [`bake`] | the order of it all: evaluate, look, check, write | how any of it is done |
 //! | [`points`] | values at any list of pairs of directions, unlooked at | tables, files |
-//! | [`storage`], `interpolation`, `optimise` | what rounding and bilinear look-ups cost, and the least bytes for a tolerance | devices, files |
 //! | [`table`], [`axis`], [`quantity`], [`storage`] | what a table is | where it came from |
 //! | `interpolation`, `optimise` | what a bilinear reader gets, and the cheapest table for it | devices |
-//! | [`trade`] | every method at every cost, timed and compared | files |
 //! | `files` | EXR, NPY, PNG, the manifest; sets written all or nothing | physics |
 //!
 //! Three evaluations of each model exist, on purpose. The **shader** and its **twin** (same file name,
