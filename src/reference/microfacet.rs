@@ -135,3 +135,21 @@ fn tan_horizon(mu: f64, cos_phi: f64) -> f64 {
     let root = x.hypot(mu);
     if x > 0.0 { (x + root) / mu } else { mu / (root - x) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Asked for a hundred times more, it gives the same within 1e-11, on 64 texels of a table.
+    #[test]
+    fn integrals_hold_to_1e_11() {
+        let ggx = Microfacet { ndf: &Ggx, masking: &SmithCorrelated, fresnel: &Schlick };
+        let centre = |k: usize| (k as f64 + 0.5) / 8.0;
+        for (mu, roughness) in (0..64).map(|k| (centre(k % 8), centre(k / 8))) {
+            let at = |tolerance| ggx.rho_dh_within(tolerance, mu, roughness * roughness);
+            let ([a, b], [c, d]) = (at(TOLERANCE), at(0.01 * TOLERANCE));
+            let error = (a - c).abs().max((b - d).abs());
+            assert!(error <= 1e-11, "μ = {mu}, roughness {roughness}: {error:e}");
+        }
+    }
+}
