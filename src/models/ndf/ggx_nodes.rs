@@ -162,7 +162,7 @@ mod tests {
         println!(
             "/// [near nodes, far nodes, near azimuths, far azimuths] in tenths, for each tolerance and place."
         );
-        println!("#[rustfmt::skip]\nconst COUNTS: [[[[u16; 4]; {columns}]; {rows}]; DECADES] = [");
+        println!("#[rustfmt::skip]\nstatic COUNTS: [[[[u16; 4]; {columns}]; {rows}]; DECADES] = [");
         for decade in 0..DECADES {
             println!("    [ // 1e-{}", decade + 1);
             for mu in table.chunks(columns) {
