@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Runs the tests. Where no Vulkan driver is found on Debian or Ubuntu it installs software Vulkan first.
+# --long runs them on more drivers (scripts/drivers.sh).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -15,6 +16,8 @@ if ! has_vulkan && command -v apt-get >/dev/null; then
     "${as_root[@]}" apt-get update -q
     "${as_root[@]}" apt-get install -q -y --no-install-recommends mesa-vulkan-drivers libvulkan1
 fi
+
+if [ "${1:-}" = --long ]; then exec scripts/drivers.sh "${@:2}"; fi
 
 # The reference integrates adaptively: optimised, or it takes minutes.
 cargo test --release "$@"
