@@ -184,6 +184,20 @@ mod command {
         serde_json::from_slice(&run.stdout).unwrap_or_else(|e| panic!("{e}: {error}"))
     }
 
+    /// Every combination of terms is checked; what ρ without masking gains has no bound, and is not judged.
+    #[test]
+    fn terms_are_chosen_by_name() {
+        for masking in ["smith-correlated", "smith-separable", "none"] {
+            for fresnel in ["schlick", "none"] {
+                let sets = [format!("masking={masking}"), format!("fresnel={fresnel}")];
+                let run = check(&["--model=ggx", "--set", &sets[0], "--set", &sets[1]]);
+                let said = String::from_utf8_lossy(&run.stdout).into_owned();
+                assert_eq!(run.status.code(), Some(0), "{sets:?}: {said}");
+                assert_eq!(said.contains("energy is not judged"), masking == "none", "{said}");
+            }
+        }
+    }
+
     /// The words of a command as a shell has them; here names are quoted by single quotes alone.
     fn words(command: &str) -> Vec<String> {
         let mut words = vec![String::new()];

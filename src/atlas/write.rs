@@ -2,9 +2,8 @@
 
 use super::{Band, Kind, Page};
 use crate::error::{Error, Result};
-use crate::files::{draw_page, draw_study};
+use crate::files::{draw_page, draw_study, write_together};
 use serde_json::{Value, json};
-use std::fs;
 use std::path::Path;
 
 /// Writes `atlas.csv`, `atlas.json` and `atlas_MODEL.png`, or `study.csv`, `study.json` and `study.png`, into
@@ -29,17 +28,7 @@ pub fn write(dir: &Path, kind: Kind, pages: &[Page], device: &Value) -> Result<(
             }
         }
     }
-    fs::create_dir_all(dir).map_err(Error::io("create the folder", dir))?;
-    let partial = |name: &str| dir.join(format!(".{name}.partial"));
-    for (name, bytes) in &files {
-        let path = partial(name);
-        fs::write(&path, bytes).map_err(Error::io("write", &path))?;
-    }
-    for (name, _) in &files {
-        let path = dir.join(name);
-        fs::rename(partial(name), &path).map_err(Error::io("write", &path))?;
-    }
-    Ok(())
+    write_together(dir, &files)
 }
 
 /// What the JSON file says. What is infinite is null in it.

@@ -1,13 +1,12 @@
 //! `gonio atlas`
 
 use super::watch::Watch;
-use super::{HEADING, print, print_json, tell};
+use super::{HEADING, device_json, print_beside, print_json};
 use crate::atlas::{self, Band, DEFAULT_BUDGET, Kind, Page};
 use crate::bake::{Evaluator, Observer};
 use crate::error::{Error, Result};
 use crate::gpu::DeviceChoice;
 use crate::models::{self, MODELS, Model};
-use serde_json::json;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -50,20 +49,9 @@ Exit codes: 0 every promise is kept, 1 one is not, 2 bad input, 3 no device, 130
 pub fn run(args: &Args) -> Result<()> {
     let models = models(args)?;
     let (evaluator, line) = Evaluator::choose(&args.device)?;
-    let say = |text: &str| {
-        if args.json {
-            tell(text);
-            return Ok(());
-        }
-        print(text)
-    };
+    let say = |text: &str| print_beside(args.json, text);
     say(&format!("{HEADING}device{HEADING:#}  {line}"))?;
-    let device = match &evaluator {
-        Evaluator::Device(device) => {
-            json!({ "kind": device.kind(), "name": device.name(), "driver": device.driver() })
-        }
-        Evaluator::Cpu => json!({ "kind": "CPU", "name": "cpu", "driver": "f64" }),
-    };
+    let device = device_json(&evaluator);
     let watch = Watch::new(if args.study { atlas::STEPS } else { models.len() });
     let pages: Result<Vec<_>> = if args.study {
         atlas::study(&evaluator, args.budget, &watch)

@@ -4,7 +4,7 @@ mod pictures;
 mod targets;
 
 use super::watch::Watch;
-use super::{HEADING, junit, print, print_json, tell, warn};
+use super::{HEADING, device_json, junit, print_beside, print_json, warn};
 use crate::bake::Evaluator;
 use crate::error::{Error, Result};
 use crate::gpu::{Device, DeviceChoice, INSTALL, UserFunction, UserShader, directions};
@@ -114,7 +114,7 @@ pub fn run(args: &Args) -> Result<()> {
 
 /// Our own models, one subject after the other.
 fn own(args: &Args, targets: Vec<Target>, evaluator: &Evaluator, line: &str) -> Result<()> {
-    say(args, &format!("{HEADING}device{HEADING:#}  {line}"))?;
+    print_beside(args.json, &format!("{HEADING}device{HEADING:#}  {line}"))?;
     let watch = Watch::new(STEPS * targets.len());
     let mut all = Vec::new();
     for (k, Target { mut subject, command }) in targets.into_iter().enumerate() {
@@ -129,7 +129,7 @@ fn own(args: &Args, targets: Vec<Target>, evaluator: &Evaluator, line: &str) -> 
             let plain = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
             let stem = format!("{k}_{}", report.subject.chars().map(plain).collect::<String>());
             for path in pictures::write(dir, &stem, &mut subject, &report)? {
-                watch.hide(|| say(args, &format!("{:15}{}", "", path.display())))?;
+                watch.hide(|| print_beside(args.json, &format!("{:15}{}", "", path.display())))?;
             }
         }
         all.push(Checked { report, seconds, inputs });
@@ -196,7 +196,7 @@ fn shader(args: &Args, path: &Path, entry: &str) -> Result<()> {
     };
     let inputs = report.findings.iter().map(|finding| finding.input.as_ref().map(words)).collect();
 
-    say(args, &format!("{HEADING}device{HEADING:#}  {line}"))?;
+    print_beside(args.json, &format!("{HEADING}device{HEADING:#}  {line}"))?;
     show_report(args, &report, seconds, &inputs)?;
     let inputs = report.findings.iter().map(|f| f.input.as_ref().map(Input::to_string)).collect();
     let checked = [Checked { report, seconds, inputs }];
@@ -241,41 +241,24 @@ impl Args {
     }
 }
 
-fn say(args: &Args, text: &str) -> Result<()> {
-    if args.json {
-        tell(text);
-        return Ok(());
-    }
-    print(text)
-}
-
 fn show_report(args: &Args, report: &Report, seconds: f64, inputs: &Vec<Option<String>>) -> Result<()> {
-    say(
-        args,
+    print_beside(
+        args.json,
         &format!(
             "{HEADING}{}{HEADING:#}, {} pairs of directions in {seconds:.1} s",
             report.subject, report.evaluated
         ),
     )?;
     for note in &report.notes {
-        say(args, &format!("{:15}{note}", ""))?;
+        print_beside(args.json, &format!("{:15}{note}", ""))?;
     }
     for (finding, input) in report.findings.iter().zip(inputs) {
-        say(args, &show(finding))?;
+        print_beside(args.json, &show(finding))?;
         if let Some(input) = input {
-            say(args, &format!("{:15}{input}", ""))?;
+            print_beside(args.json, &format!("{:15}{input}", ""))?;
         }
     }
     Ok(())
-}
-
-fn device_json(evaluator: &Evaluator) -> serde_json::Value {
-    match evaluator {
-        Evaluator::Device(device) => {
-            json!({ "kind": device.kind(), "name": device.name(), "driver": device.driver() })
-        }
-        Evaluator::Cpu => json!({ "kind": "CPU", "name": "cpu", "driver": "f64" }),
-    }
 }
 
 /// A value or a range for each parameter of the function.

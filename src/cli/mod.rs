@@ -10,9 +10,11 @@ mod models;
 mod trade;
 mod watch;
 
+use crate::bake::Evaluator;
 use crate::error::{Error, Result};
 use anstyle::{AnsiColor, Style};
 use clap::{Parser, Subcommand};
+use serde_json::{Value, json};
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
@@ -98,6 +100,25 @@ fn tell(text: &str) {
 
 fn warn(message: &str) {
     tell(&format!("{WARNING}warning:{WARNING:#} {message}"));
+}
+
+/// What is baked on, as JSON files say it.
+fn device_json(evaluator: &Evaluator) -> Value {
+    match evaluator {
+        Evaluator::Device(device) => {
+            json!({ "kind": device.kind(), "name": device.name(), "driver": device.driver() })
+        }
+        Evaluator::Cpu => json!({ "kind": "CPU", "name": "cpu", "driver": "f64" }),
+    }
+}
+
+/// Prints a line for people: on stdout, or on stderr where stdout is for JSON.
+fn print_beside(json: bool, text: &str) -> Result<()> {
+    if json {
+        tell(text);
+        return Ok(());
+    }
+    print(text)
 }
 
 /// Prints a value as JSON on stdout.

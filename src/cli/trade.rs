@@ -1,7 +1,7 @@
 //! `gonio trade`
 
 use super::watch::Watch;
-use super::{HEADING, print, print_json, tell, warn};
+use super::{HEADING, device_json, print_beside, print_json, warn};
 use crate::axis::{Axis, Variable};
 use crate::bake::Evaluator;
 use crate::error::{Error, Result};
@@ -11,7 +11,6 @@ use crate::plan::{Plan, Selection, TablePlan};
 use crate::quantity::{self, Evaluation};
 use crate::scene;
 use crate::trade::{Options, Point, Trade, measure, write};
-use serde_json::json;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -73,20 +72,9 @@ fn seconds(text: &str) -> Result<f64, String> {
 pub fn run(args: &Args) -> Result<()> {
     let table = table(args)?;
     let (evaluator, line) = Evaluator::choose(&args.device)?;
-    let say = |text: &str| {
-        if args.json {
-            tell(text);
-            return Ok(());
-        }
-        print(text)
-    };
+    let say = |text: &str| print_beside(args.json, text);
     say(&format!("{HEADING}device{HEADING:#}  {line}"))?;
-    let device = match &evaluator {
-        Evaluator::Device(device) => {
-            json!({ "kind": device.kind(), "name": device.name(), "driver": device.driver() })
-        }
-        Evaluator::Cpu => json!({ "kind": "CPU", "name": "cpu", "driver": "f64" }),
-    };
+    let device = device_json(&evaluator);
     let options = Options { budget: args.budget, check_all: args.check == "all" };
     let watch = Watch::new(options.steps());
     let trade = measure(&table, &evaluator, &options, &watch);

@@ -35,7 +35,8 @@ use crate::error::{Error, Result};
 use crate::table::Table;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::{fmt, str};
+use std::path::Path;
+use std::{fmt, fs, str};
 
 /// What a table came from, by name: the scene, its hash, the device. No times: the same input gives
 /// the same bytes.
@@ -52,6 +53,22 @@ pub enum Format {
     Npy,
     /// A preview to look at, not to read values from.
     Png,
+}
+
+/// Writes files into a folder, which is made if it is not there: each under another name first, and all are
+/// renamed once all are there.
+pub(crate) fn write_together(dir: &Path, files: &[(String, Vec<u8>)]) -> Result<()> {
+    fs::create_dir_all(dir).map_err(Error::io("create the folder", dir))?;
+    let partial = |name: &str| dir.join(format!(".{name}.partial"));
+    for (name, bytes) in files {
+        let path = partial(name);
+        fs::write(&path, bytes).map_err(Error::io("write", &path))?;
+    }
+    for (name, _) in files {
+        let path = dir.join(name);
+        fs::rename(partial(name), &path).map_err(Error::io("write", &path))?;
+    }
+    Ok(())
 }
 
 impl Format {

@@ -287,9 +287,15 @@ pub fn check(subject: &mut dyn Subject, options: &Options, observer: &dyn Observ
         observer.begin(property.name());
         worst.push(search::hunt(property.as_mut(), &mut probe, &inputs, options.search, observer)?);
     }
-    let energy = match albedo::check(&mut probe, options.search, tolerances.energy, observer)? {
-        Some(energy) => energy,
-        None => energy::check(&mut probe, options, tolerances.energy, observer)?,
+    // What is declared to gain without bound is not judged by how much it gains.
+    let (boundless, declared): (Vec<_>, Vec<_>) =
+        declared.into_iter().partition(|declared| declared.bound.is_infinite());
+    let energy = match boundless.is_empty() {
+        false => None,
+        true => match albedo::check(&mut probe, options.search, tolerances.energy, observer)? {
+            Some(energy) => Some(energy),
+            None => Some(energy::check(&mut probe, options, tolerances.energy, observer)?),
+        },
     };
 
     // Every value was looked at, whatever it was evaluated for: orbits and integrals too.
@@ -300,7 +306,7 @@ pub fn check(subject: &mut dyn Subject, options: &Options, observer: &dyn Observ
         .iter()
         .zip(worst)
         .map(|(property, worst)| Finding::new(property.as_ref(), worst, &probe))
-        .chain([energy])
+        .chain(energy)
         .collect();
     for declared in &declared {
         report::hold(&mut findings, declared, probe.subject.shows(declared.property))?;
@@ -308,6 +314,8 @@ pub fn check(subject: &mut dyn Subject, options: &Options, observer: &dyn Observ
     for finding in &mut findings {
         finding.evaluate(probe.subject)?;
     }
-    let (subject, notes) = (probe.subject.name(), probe.subject.notes());
+    let (subject, mut notes) = (probe.subject.name(), probe.subject.notes());
+    let boundless = boundless.iter().map(|declared| &declared.citation);
+    notes.extend(boundless.map(|citation| format!("energy is not judged: ρ_dh has no bound ({citation})")));
     Ok(Report { subject, evaluated: probe.evaluated, findings, notes })
 }

@@ -5,7 +5,7 @@ use crate::axis::{Axis, Variable};
 use crate::bake::{Evaluator, Stages, Unobserved};
 use crate::check::Check;
 use crate::error::{Error, Result};
-use crate::models::{ALPHA_MIN_VALUE, Model, Violation};
+use crate::models::{ALPHA_MIN_VALUE, Integral, Model, Violation};
 use crate::plan::{INTEGRAL_F32, Lobe, TablePlan, VALUE_F32, constant_lobes};
 use crate::points::Points;
 use crate::quantity::RHO_DH;
@@ -191,6 +191,9 @@ impl Subject for Sum<'_> {
     /// By the tables that a bake makes: ρ_dh of each model, at the tolerance that f32 has.
     fn rho_dh(&mut self, settings: &[Vec<f64>], thetas: &[f64]) -> Result<Option<Vec<f64>>> {
         let sums = settings.iter().map(|setting| (self.lobes)(setting)).collect::<Result<Vec<_>>>()?;
+        if sums.iter().flatten().any(|lobe| matches!(lobe.model.integral, Integral::Unbounded(_))) {
+            return Ok(None); // no table has it: the generic integral shows what is gained
+        }
         let mut rho = vec![0.0; settings.len() * thetas.len() * CHANNELS];
         for k in 0..sums.first().map_or(0, Vec::len) {
             let lobes: Vec<_> = sums.iter().map(|lobes| &lobes[k]).collect();

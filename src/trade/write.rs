@@ -2,9 +2,8 @@
 
 use super::{Point, Trade};
 use crate::error::{Error, Result};
-use crate::files::draw_trade;
+use crate::files::{draw_trade, write_together};
 use serde_json::{Value, json};
-use std::fs;
 use std::path::Path;
 
 /// Writes `trade.csv`, `trade.json` and `trade.png` into a folder, which is made if it is not there. Each
@@ -16,20 +15,11 @@ pub fn write(dir: &Path, trade: &Trade, device: &Value) -> Result<Value> {
     let json = to_json(trade, device);
     let text = serde_json::to_string_pretty(&json).map_err(|e| Error::Internal(e.to_string()))? + "\n";
     let files = [
-        ("trade.csv", to_csv(&trade.points).into_bytes()),
-        ("trade.json", text.into_bytes()),
-        ("trade.png", draw_trade(trade)?),
+        ("trade.csv".to_owned(), to_csv(&trade.points).into_bytes()),
+        ("trade.json".to_owned(), text.into_bytes()),
+        ("trade.png".to_owned(), draw_trade(trade)?),
     ];
-    fs::create_dir_all(dir).map_err(Error::io("create the folder", dir))?;
-    let partial = |name: &str| dir.join(format!(".{name}.partial"));
-    for (name, bytes) in &files {
-        let path = partial(name);
-        fs::write(&path, bytes).map_err(Error::io("write", &path))?;
-    }
-    for (name, _) in &files {
-        let path = dir.join(name);
-        fs::rename(partial(name), &path).map_err(Error::io("write", &path))?;
-    }
+    write_together(dir, &files)?;
     Ok(json)
 }
 

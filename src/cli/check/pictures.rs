@@ -2,8 +2,8 @@
 //! over θi and θe, at the parameters and the δφ of its worst input.
 
 use crate::axis::{Axis, Variable};
-use crate::error::{Error, Result};
-use crate::files::{Format, Provenance};
+use crate::error::Result;
+use crate::files::{Format, Provenance, write_together};
 use crate::points::Angles;
 use crate::promises::{FAINT, Finding, Parameter, Report, Subject};
 use crate::storage::Storage;
@@ -19,19 +19,15 @@ const SIDE: usize = 181;
 
 /// Writes `STEM.rho_dh.png`, and `STEM.error.png` where there are values; returns which.
 pub fn write(dir: &Path, stem: &str, subject: &mut dyn Subject, report: &Report) -> Result<Vec<PathBuf>> {
-    std::fs::create_dir_all(dir).map_err(Error::io("make", dir))?;
-    let mut written = Vec::new();
     let tables = [furnace(subject, report)?, errors(subject, report)?];
+    let mut files = Vec::new();
     for (table, what) in tables.into_iter().zip(["rho_dh", "error"]) {
-        let Some(table) = table else { continue };
-        let path = dir.join(format!("{stem}.{what}.png"));
-        let partial = path.with_added_extension("partial");
-        std::fs::write(&partial, Format::Png.encode(&table, &Provenance::new())?)
-            .map_err(Error::io("write", &path))?;
-        std::fs::rename(&partial, &path).map_err(Error::io("write", &path))?;
-        written.push(path);
+        if let Some(table) = table {
+            files.push((format!("{stem}.{what}.png"), Format::Png.encode(&table, &Provenance::new())?));
+        }
     }
-    Ok(written)
+    write_together(dir, &files)?;
+    Ok(files.into_iter().map(|(name, _)| dir.join(name)).collect())
 }
 
 /// A line for each of some values of the first parameter that has a range, the others as at the largest

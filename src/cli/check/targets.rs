@@ -18,7 +18,7 @@ pub struct Target<'a> {
 
 /// `--model NAME` with `--set`: what is not set is checked over its whole range.
 pub fn model<'a>(args: &Args, name: &str, evaluator: &'a Evaluator) -> Result<Target<'a>> {
-    let model = models::find(name)?;
+    let mut model = models::find(name)?;
     let (mut fixed, mut ranges) = (Vec::new(), Vec::new());
     for set in &args.set {
         let (key, value) = set.split_once('=').ok_or_else(|| {
@@ -29,6 +29,9 @@ pub fn model<'a>(args: &Args, name: &str, evaluator: &'a Evaluator) -> Result<Ta
             return Err(Error::input(format!("--set {set}: \"{key}\" is given twice")));
         }
         match value.split_once("..") {
+            // Terms have no numbers: the model's name tells them from here on.
+            None if key == "masking" => model = model.with_terms(Some(value.trim()), None)?,
+            None if key == "fresnel" => model = model.with_terms(None, Some(value.trim()))?,
             None => fixed.push((key, value)),
             Some((low, high)) => {
                 let number = |text: &str| {
@@ -94,7 +97,7 @@ pub fn scene<'a>(
     }
     let mut targets = Vec::new();
     if material.is_none() {
-        for model in models::MODELS {
+        for model in models::all() {
             if let Some(range) = used(scene, model) {
                 targets.push(basis(model, range, evaluator)?);
             }
