@@ -35,29 +35,31 @@ pub(crate) const TILE_COLUMNS: usize = 8;
 impl SlopeWork {
     pub fn new(slopes: &'static Slopes, mus: Vec<f64>, alphas: &[f64], tolerance: f64) -> Self {
         let (mut azimuths, mut nodes) = (Vec::new(), Vec::new());
-        // Where each rule is that some tile takes.
+        // Each rule that some tile takes, and where its azimuths and its nodes are.
+        let mut rules = HashMap::new();
         let (mut azimuths_of, mut nodes_of) = (HashMap::new(), HashMap::new());
         let mut tiles = Vec::new();
         for alphas in alphas.chunks(TILE_ALPHAS) {
             for (group, mus) in mus.chunks(TILE_COLUMNS).enumerate() {
                 let counts = most(mus, alphas, |mu, alpha| (slopes.counts)(mu, alpha, tolerance));
-                tiles.push([(1.0, counts[0]), (-1.0, counts[1])].map(|(sign, counts)| Side {
-                    first_azimuth: *azimuths_of.entry((group, sign > 0.0, counts.azimuths)).or_insert_with(
-                        || {
-                            let first = azimuths.len();
-                            azimuths.extend(
-                                mus.iter().flat_map(|&mu| side(mu, sign, counts.azimuths, tolerance)),
-                            );
-                            first
-                        },
-                    ),
-                    first_node: *nodes_of.entry(counts.nodes).or_insert_with(|| {
-                        let first = nodes.len();
-                        nodes.extend(gauss_legendre(counts.nodes));
+                let side = |(sign, counts): (f64, SlopeCounts)| {
+                    let first_azimuth = azimuths_of.entry((group, sign > 0.0, counts.azimuths));
+                    let first_azimuth = *first_azimuth.or_insert_with(|| {
+                        let first = azimuths.len();
+                        let rule = rules.entry(counts.azimuths).or_insert_with_key(|&n| gauss_legendre(n));
+                        azimuths.extend(mus.iter().flat_map(|&mu| side(mu, sign, rule, tolerance)));
                         first
-                    }),
-                    counts,
-                }));
+                    });
+                    let first_node = *nodes_of.entry(counts.nodes).or_insert_with(|| {
+                        let first = nodes.len();
+                        nodes.extend(
+                            rules.entry(counts.nodes).or_insert_with_key(|&n| gauss_legendre(n)).iter(),
+                        );
+                        first
+                    });
+                    Side { first_azimuth, first_node, counts }
+                };
+                tiles.push([(1.0, counts[0]), (-1.0, counts[1])].map(side));
             }
         }
         Self { slopes, tolerance, mus, azimuths, nodes, tiles }
@@ -108,13 +110,13 @@ fn most(mus: &[f64], alphas: &[f64], counts: impl Fn(f64, f64) -> [SlopeCounts; 
 
 /// Azimuths φ = π/2 ∓ d sinh u of ωm from ωe's, u ∈ [0, asinh(π/2d)]: the horizon turns within μ of
 /// φ = π/2. c = tan θe cos φ; t_max = c + √(c² + 1), without cancellation where c < 0.
-pub(crate) fn side(mu: f64, sign: f64, n: usize, tolerance: f64) -> impl Iterator<Item = [f64; 4]> {
+pub(crate) fn side(mu: f64, sign: f64, rule: &[Node], tolerance: f64) -> impl Iterator<Item = [f64; 4]> {
     // Found by search: smaller wastes nodes on a turn that contributes nothing, larger misses it.
     let d_min = if is_fine(tolerance) { 1e-3 } else { 0.1 };
     let tan = ((1.0 - mu) * (1.0 + mu)).sqrt() / mu;
     let d = mu.max(d_min);
     let u_max = (FRAC_PI_2 / d).asinh();
-    gauss_legendre(n).into_iter().map(move |node| {
+    rule.iter().map(move |node| {
         let u = u_max * node.x;
         let c = sign * tan * (d * u.sinh()).sin();
         let root = c.hypot(1.0);

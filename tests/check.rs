@@ -67,31 +67,11 @@ fn ggx_in_good_form_keeps_every_promise() {
 /// The generic integral of an unknown f, GGX without Fresnel at normal incidence and α = 1: 1 − ln 2.
 #[test]
 fn the_integral_agrees_with_a_closed_form() {
-    let mut subject = Fixed { inner: shader("ggx", "brdf", &[("alpha", 1.0, 1.0), ("f0", 1.0, 1.0)], false) };
+    let mut subject = shader("ggx", "brdf", &[("alpha", 1.0, 1.0), ("f0", 1.0, 1.0)], false);
     let report = report(&mut subject);
     let said = &report.find("energy").unwrap().said;
     let exact = format!("ρ_dh from {:.6}", 1.0 - 2f64.ln());
     assert!(said.starts_with(&exact), "{said} is not {exact}");
-}
-
-/// GGX whose least albedo over θ is at the normal where α = 1.
-struct Fixed {
-    inner: UserShader<'static>,
-}
-
-impl Subject for Fixed {
-    fn name(&self) -> String {
-        self.inner.name()
-    }
-    fn parameters(&self) -> &[Parameter] {
-        self.inner.parameters()
-    }
-    fn channels(&self) -> usize {
-        self.inner.channels()
-    }
-    fn evaluate(&mut self, setting: &[f64], angles: &[Angles], out: &mut Vec<f32>) -> gonio::Result<()> {
-        self.inner.evaluate(setting, angles, out)
-    }
 }
 
 /// f cos θi is checked as f: a Lambertian surface that comes with the cosine is reciprocal.

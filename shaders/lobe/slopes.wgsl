@@ -9,6 +9,14 @@
 /// One azimuth of ωm: (μe c, t_max, 1/t_max, weight).
 alias SlopeAzimuth = vec4<real>;
 
+/// What a map makes of r: tan θm = p/m, and w dv/dr / m = NDF_MAP_WEIGHT weight/divisor.
+struct Map {
+    p: real4,
+    m: real4,
+    weight: real4,
+    divisor: real4,
+}
+
 /// The integrand at r, times w dv/dr and a node's weight: without Fresnel, and its part that F90 weighs. Both
 /// over 2 NDF_MAP_WEIGHT.
 struct Slope {

@@ -31,3 +31,6 @@ fn masked(mu: real, alpha: real4) -> Masked {
 fn smith_root_at(x: real4, y: real4, e: Masked) -> real4 {
     return sqrt(fma(e.a2, y * y, e.b2 * (x * x)));
 }
+
+/// Beyond it, in units of α, the lobe holds 1e-18 of its weight; the maps' squares would overflow as α → 0.
+const TAN_CAP: real = 1e9;

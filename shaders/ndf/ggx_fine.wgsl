@@ -2,22 +2,12 @@
 // nodes at 1e-9. With a = 1 + r², b = 1 − r², s = a² + 4r² and S = s² + (4ra)²,
 //     sinh v = 8ras/b⁴,  cosh v = S/b⁴,  dv/dr = 8/b.
 
-/// r at which tan θm reaches `tan_max`. Beyond TAN_CAP · α the lobe holds 1e-18 of its weight;
-/// without the cap the square overflows as α → 0.
+/// r at which tan θm reaches `tan_max`.
 fn ndf_map_end(tan_max: real, alpha: real4) -> real4 {
     let sinh_v = min(tan_max / alpha, real4(TAN_CAP));
     let cosh_2 = sqrt(0.5 + 0.5 * sqrt(1.0 + sinh_v * sinh_v)); // cosh(v/2)
     let cosh_4 = sqrt(0.5 + 0.5 * cosh_2);                      // cosh(v/4)
     return 0.25 * sinh_v / (cosh_2 * cosh_4 * (1.0 + cosh_4));
-}
-const TAN_CAP: real = 1e9;
-
-/// tan θm = p/m, and w dv/dr / m = NDF_MAP_WEIGHT weight/divisor, at r.
-struct Map {
-    p: real4,
-    m: real4,
-    weight: real4,
-    divisor: real4,
 }
 
 /// `tan_scale` is NDF_MAP_TAN α.

@@ -236,7 +236,9 @@ mod tests {
                 let mut sum = [0.0; 2];
                 for (sign, counts) in [1.0, -1.0].into_iter().zip(counts) {
                     let nodes = gauss_legendre(counts.nodes);
-                    for [c, t_max, inverse, weight] in side(mu, sign, counts.azimuths, tolerance) {
+                    for [c, t_max, inverse, weight] in
+                        side(mu, sign, &gauss_legendre(counts.azimuths), tolerance)
+                    {
                         let end = (map.end)(t_max, alpha);
                         for node in &nodes {
                             let f = (map.integrand)(end * node.x, [c, t_max, inverse], mu, alpha);

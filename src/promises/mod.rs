@@ -288,14 +288,15 @@ pub fn check(subject: &mut dyn Subject, options: &Options, observer: &dyn Observ
         worst.push(search::hunt(property.as_mut(), &mut probe, &inputs, options.search, observer)?);
     }
     // What is declared to gain without bound is not judged by how much it gains.
-    let (boundless, declared): (Vec<_>, Vec<_>) =
-        declared.into_iter().partition(|declared| declared.bound.is_infinite());
-    let energy = match boundless.is_empty() {
-        false => None,
-        true => match albedo::check(&mut probe, options.search, tolerances.energy, observer)? {
-            Some(energy) => Some(energy),
-            None => Some(energy::check(&mut probe, options, tolerances.energy, observer)?),
-        },
+    let (boundless, declared): (Vec<_>, Vec<_>) = declared
+        .into_iter()
+        .partition(|declared| declared.property == "energy" && declared.bound.is_infinite());
+    let energy = if !boundless.is_empty() {
+        None
+    } else if let Some(energy) = albedo::check(&mut probe, options.search, tolerances.energy, observer)? {
+        Some(energy)
+    } else {
+        Some(energy::check(&mut probe, options, tolerances.energy, observer)?)
     };
 
     // Every value was looked at, whatever it was evaluated for: orbits and integrals too.

@@ -63,7 +63,7 @@ mod tests {
     fn integral(mu: f64, alpha: f64, sign: f64, azimuths: usize, nodes: &[Node], tolerance: f64) -> [f64; 2] {
         let map = slopes().map(tolerance);
         let mut sum = [0.0; 2];
-        for [c, t_max, inverse, weight] in side(mu, sign, azimuths, tolerance) {
+        for [c, t_max, inverse, weight] in side(mu, sign, &gauss_legendre(azimuths), tolerance) {
             let end = (map.end)(t_max, alpha);
             for node in nodes {
                 let [a, b] = (map.integrand)(end * node.x, [c, t_max, inverse], mu, alpha);
