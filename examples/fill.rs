@@ -89,7 +89,7 @@ fn table() -> gonio::Result<TablePlan> {
     let weights = [1.0, 0.78, 0.34].map(|f0| [f0, 1.0]).to_vec();
     Ok(TablePlan {
         channels: ["R", "G", "B"].map(String::from).to_vec(),
-        lobes: vec![Lobe { model: ggx, roughness: Some(0.5), weights }],
+        lobes: vec![Lobe::new(ggx, Some(0.5), weights)],
         ..basis
     })
 }

@@ -173,17 +173,16 @@ pub fn reference(table: &TablePlan, texel: usize) -> Vec<f64> {
 fn reference_lobe(evaluation: Evaluation, lobe: &Lobe, at: &BTreeMap<Variable, f64>) -> [f64; 2] {
     let Some(reference) = lobe.model.reference else { return [f64::NAN; 2] };
     let get = |variable| at.get(&variable).copied();
-    let roughness = get(Variable::Roughness).or(lobe.roughness).unwrap_or(0.0);
-    let alpha = if lobe.model.has_roughness { roughness * roughness } else { 0.0 };
+    let setting = &lobe.setting_at(get(Variable::Roughness));
     let theta_i = get(Variable::ThetaI).unwrap_or(0.0);
     match evaluation {
         Evaluation::Value => {
             let theta_e = get(Variable::ThetaE).unwrap_or(0.0);
             let delta_phi = get(Variable::DeltaPhi).unwrap_or(0.0);
-            reference.brdf(&Angles { theta_i, theta_e, delta_phi }, alpha).unwrap_or([f64::NAN; 2])
+            reference.brdf(&Angles { theta_i, theta_e, delta_phi }, setting).unwrap_or([f64::NAN; 2])
         }
-        Evaluation::Directional => reference.rho_dh(get(Variable::Mu).unwrap_or(theta_i.cos()), alpha),
-        Evaluation::Hemispherical => reference.rho_hh(alpha),
+        Evaluation::Directional => reference.rho_dh(get(Variable::Mu).unwrap_or(theta_i.cos()), setting),
+        Evaluation::Hemispherical => reference.rho_hh(setting),
     }
 }
 

@@ -66,9 +66,9 @@ pub(crate) fn stream(
 
 fn add_row(out: &mut [f64], lobe: &Lobe, work: &Work, row: usize) {
     let WorkKind::Values { pairs, azimuths } = &work.kind else { return };
-    let (alpha, pair) = (work.alphas[row / pairs.len()], &pairs[row % pairs.len()]);
+    let (setting, pair) = (lobe.setting(work.alphas[row / pairs.len()]), &pairs[row % pairs.len()]);
     for (azimuth, out) in azimuths.iter().zip(out.chunks_mut(lobe.weights.len())) {
-        add(out, lobe, (lobe.model.lobe)(pair, azimuth, alpha));
+        add(out, lobe, (lobe.model.lobe)(pair, azimuth, &setting));
     }
 }
 
@@ -80,19 +80,22 @@ fn add(out: &mut [f64], lobe: &Lobe, [a, b]: [f64; 2]) {
 
 /// The inner integral `k` of a row of α.
 fn integrate(work: &Work, inner: &Inner, lobe: &Lobe, row: usize, k: usize) -> [f64; 2] {
-    let alpha = work.alphas[row];
+    let setting = &lobe.setting(work.alphas[row]);
+    let alpha = setting.alpha;
     let mut sum = [0.0; 2];
     let mut add = |weight: f64, [a, b]: [f64; 2]| sum = [sum[0] + weight * a, sum[1] + weight * b];
     match inner {
-        Inner::Slopes(work) if alpha < ALPHA_MIN_INTEGRAL => return (work.slopes.mirror_limit)(work.mus[k]),
+        Inner::Slopes(work) if alpha < ALPHA_MIN_INTEGRAL => {
+            return (work.slopes.mirror_limit)(work.mus[k], setting);
+        }
         Inner::Slopes(work) => {
             let mu = work.mus[k];
             let map = work.slopes.map(work.tolerance);
             for (azimuths, nodes) in work.sides(row, k) {
                 for &[c, t_max, t_max_inverse, weight] in azimuths {
-                    let end = (map.end)(t_max, alpha);
+                    let end = (map.end)(t_max, setting);
                     for node in nodes {
-                        let f = (map.integrand)(end * node.x, [c, t_max, t_max_inverse], mu, alpha);
+                        let f = (map.integrand)(end * node.x, [c, t_max, t_max_inverse], mu, setting);
                         add(weight * end * node.weight, f);
                     }
                 }
@@ -100,15 +103,15 @@ fn integrate(work: &Work, inner: &Inner, lobe: &Lobe, row: usize, k: usize) -> [
         }
         Inner::Samples(work) if alpha < ALPHA_MIN_INTEGRAL => {
             let mu = work.mus[k / work.chunks];
-            return (work.mirror_limit)(mu).map(|f| f * work.chunk as f64);
+            return (work.mirror_limit)(mu, setting).map(|f| f * work.chunk as f64);
         }
-        Inner::Samples(work) => return work.sum(row, k, alpha),
+        Inner::Samples(work) => return work.sum(row, k, setting),
         Inner::Product { pairs, azimuths } => {
             for azimuth in azimuths {
-                add(azimuth.weight, (lobe.model.lobe)(&pairs[k], azimuth, alpha));
+                add(azimuth.weight, (lobe.model.lobe)(&pairs[k], azimuth, setting));
             }
         }
-        Inner::Analytic { directional, mus } => return directional(mus[k], alpha),
+        Inner::Analytic { directional, mus } => return directional(mus[k], setting),
     }
     sum
 }

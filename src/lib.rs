@@ -26,7 +26,7 @@
 //! | [`atlas`] | what f32 loses against f64, by model and decade of α; the published forms of GGX | how values are computed |
 //! | [`bake`] | the order of it all: evaluate, look, check, write | how any of it is done |
 //! | [`points`] | values at any list of pairs of directions, unlooked at | tables, files |
-//! | [`table`], [`axis`], [`quantity`], [`storage`] | what a table is | where it came from |
+//! | [`table`], [`axis`], [`quantity`], [`storage`], [`setting`] | what a table is | where it came from |
 //! | `interpolation`, `optimise` | what a bilinear reader gets, and the cheapest table for it | devices |
 //! | `files` | EXR, NPY, PNG, the manifest; sets written all or nothing | physics |
 //!
@@ -89,6 +89,7 @@ pub mod quantity;
 pub mod reference;
 mod sampling;
 pub mod scene;
+pub mod setting;
 mod slopes;
 pub mod storage;
 pub mod table;

@@ -8,10 +8,11 @@ pub use requirements::{Basis, MaterialPlan, Plan, Selection};
 
 use crate::axis::{Axis, Variable};
 use crate::error::{Error, Result};
-use crate::models::{ALPHA_MIN_VALUE, Integral, Model};
+use crate::models::{Integral, Model};
 use crate::optimise::Choice;
 use crate::quantity::{Evaluation, Quantity};
 use crate::sampling::CHUNK;
+use crate::setting::{Parameters, Setting};
 use crate::storage::{Storage, UNORM};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -48,8 +49,48 @@ pub struct Lobe {
     pub model: &'static Model,
     /// Perceptual roughness where the table has no roughness axis; unused by models without one.
     pub roughness: Option<f64>,
+    /// The rest of the model's parameters, each in its place.
+    pub parameters: Parameters,
     /// For each channel, the weights of the components A and B.
     pub weights: Vec<[f64; 2]>,
+}
+
+impl Lobe {
+    /// A lobe with its model's defaults for all but the roughness.
+    pub fn new(model: &'static Model, roughness: Option<f64>, weights: Vec<[f64; 2]>) -> Self {
+        Self { model, roughness, parameters: model.defaults(), weights }
+    }
+
+    /// Takes a value for a parameter of its model.
+    ///
+    /// # Errors
+    /// When there is none of this name, or the value is outside its range.
+    pub fn set(&mut self, name: &str, value: f64) -> Result<()> {
+        let Some(parameter) = self.model.parameters().find(|parameter| parameter.name == name) else {
+            return Err(Error::input(format!("{} has no parameter \"{name}\"", self.model.name)));
+        };
+        let [low, high] = parameter.range;
+        if !(low..=high).contains(&value) {
+            return Err(Error::input(format!("{name} = {value} is outside [{low}, {high}]")));
+        }
+        self.parameters[parameter.place] = value;
+        Ok(())
+    }
+
+    /// The setting with a shape, in the model's own measure.
+    pub fn setting(&self, alpha: f64) -> Setting {
+        Setting { alpha, parameters: self.parameters }
+    }
+
+    /// The setting at the lobe's own roughness, or at this one where a table sweeps it.
+    pub fn setting_at(&self, swept: Option<f64>) -> Setting {
+        self.setting(self.model.measure(swept.or(self.roughness).unwrap_or(0.0)))
+    }
+
+    /// The settings with some shapes.
+    pub(crate) fn settings(&self, alphas: Vec<f64>) -> Vec<Setting> {
+        alphas.into_iter().map(|alpha| self.setting(alpha)).collect()
+    }
 }
 
 /// An arithmetic.
@@ -175,7 +216,7 @@ impl TablePlan {
             subject: model.name.into(),
             axes,
             channels: model.components.iter().map(|c| c.name.to_string()).collect(),
-            lobes: vec![Lobe { model, roughness, weights: unit[..model.components.len()].to_vec() }],
+            lobes: vec![Lobe::new(model, roughness, unit[..model.components.len()].to_vec())],
             rule: Rule::Warped,
             tolerance: DEFAULT_TOLERANCE,
             storage: Storage::F32,
@@ -187,6 +228,25 @@ impl TablePlan {
     /// The same table by another rule.
     pub fn with_rule(self, rule: Rule) -> Result<Self> {
         Self { rule, ..self }.checked()
+    }
+
+    /// The same table with some of its model's parameters, by name.
+    ///
+    /// # Errors
+    /// When a lobe's model has none of this name, or the value is outside its range.
+    pub fn with_parameters(mut self, parameters: &[(String, f64)]) -> Result<Self> {
+        for lobe in &mut self.lobes {
+            for (name, value) in parameters {
+                lobe.set(name, *value)?;
+            }
+        }
+        Ok(self)
+    }
+
+    /// The same with all of them, each in its place.
+    pub(crate) fn with_places(mut self, parameters: Parameters) -> Self {
+        self.lobes.iter_mut().for_each(|lobe| lobe.parameters = parameters);
+        self
     }
 
     /// The same table with another tolerance.
@@ -224,7 +284,7 @@ impl TablePlan {
         }
         for lobe in &self.lobes {
             let model = lobe.model;
-            if model.has_roughness && !swept && lobe.roughness.is_none() {
+            if model.shape.is_some() && !swept && lobe.roughness.is_none() {
                 return refuse(format!("{} needs a roughness: give a value or an axis", model.name));
             }
             let alphas = self.alphas(lobe);
@@ -235,23 +295,24 @@ impl TablePlan {
             if let (false, Integral::Unbounded(why)) = (value, model.integral) {
                 return refuse(format!("{} has no {}: {why}; tabulate brdf", model.name, self.quantity.name));
             }
-            let Some(low) = alphas.iter().copied().reduce(f64::min).filter(|_| model.has_roughness) else {
+            let Some((shape, low)) = model.shape.zip(alphas.iter().copied().reduce(f64::min)) else {
                 continue;
             };
-            if value && low < ALPHA_MIN_VALUE {
+            let name = shape.name;
+            if value && low < shape.least {
                 return refuse(format!(
-                    "α = {low} has no finite values (a delta in the limit); start at roughness {}",
-                    ALPHA_MIN_VALUE.sqrt()
+                    "{name} = {low} has no finite values (a delta in the limit); start at roughness {}",
+                    shape.roughness(shape.least)
                 ));
             }
-            if self.rule.nodes().is_some() && low < ALPHA_MIN_VALUE {
+            if self.rule.nodes().is_some() && low < shape.least {
                 return refuse(format!(
-                    "the {} rule cannot see a lobe of α = {low}; use the warped rule",
+                    "the {} rule cannot see a lobe of {name} = {low}; use the warped rule",
                     self.rule.name()
                 ));
             }
         }
-        if swept && !self.lobes.iter().any(|lobe| lobe.model.has_roughness) {
+        if swept && !self.lobes.iter().any(|lobe| lobe.model.shape.is_some()) {
             return refuse(format!("{} has no roughness to be an axis", self.subject));
         }
         // Counts multiply beyond any usize.
@@ -391,25 +452,24 @@ impl TablePlan {
         self.axes.iter().find(|axis| axis.variable == variable)
     }
 
-    /// α = roughness² of a lobe along the table's slowest axis; one value without a roughness axis.
+    /// The shape of a lobe, in its model's own measure, along the table's slowest axis; one value without a
+    /// roughness axis.
     pub fn alphas(&self, lobe: &Lobe) -> Vec<f64> {
         let swept = self.axis(Variable::Roughness).map(|axis| axis.values.clone());
         let roughness = swept.unwrap_or_else(|| vec![lobe.roughness.unwrap_or(0.0)]);
-        roughness.into_iter().map(|r| r * r).collect()
+        roughness.into_iter().map(|r| lobe.model.measure(r)).collect()
     }
 
     /// Parameters that are the same for the whole table.
     pub fn parameters(&self) -> BTreeMap<String, f64> {
-        let fixed = |lobe: &Lobe| Some(("roughness".to_string(), lobe.roughness?));
-        let several = self.lobes.iter().filter(|l| l.roughness.is_some()).count() > 1;
-        self.lobes
-            .iter()
-            .enumerate()
-            .filter_map(|(k, lobe)| {
-                let (name, value) = fixed(lobe)?;
-                Some((if several { format!("lobes[{k}].{name}") } else { name }, value))
-            })
-            .collect()
+        let fixed = |lobe: &Lobe| {
+            let rest = requirements::named(lobe.model, &lobe.parameters);
+            lobe.roughness.map(|r| ("roughness", r)).into_iter().chain(rest).collect::<Vec<_>>()
+        };
+        let several = self.lobes.iter().filter(|lobe| !fixed(lobe).is_empty()).count() > 1;
+        let name = |k, name: &str| if several { format!("lobes[{k}].{name}") } else { name.into() };
+        let lobes = self.lobes.iter().enumerate();
+        lobes.flat_map(|(k, lobe)| fixed(lobe).into_iter().map(move |(n, x)| (name(k, n), x))).collect()
     }
 }
 

@@ -6,7 +6,7 @@
 //!
 //! # fn main() -> gonio::Result<()> {
 //! // F0 = 1 and F90 = 1: GGX without Fresnel.
-//! let lobe = Lobe { model: models::find("ggx")?, roughness: Some(0.3), weights: vec![[1.0, 1.0]] };
+//! let lobe = Lobe::new(models::find("ggx")?, Some(0.3), vec![[1.0, 1.0]]);
 //! let mut points = Points::new(&Evaluator::Cpu, &[lobe])?;
 //! let mut values = Vec::new();
 //! points.evaluate(&[Angles { theta_i: 0.5, phi_i: 0.0, theta_e: 0.4, phi_e: 3.0 }], &mut values)?;
@@ -18,7 +18,7 @@
 use crate::bake::Evaluator;
 use crate::error::{Error, Result};
 use crate::gpu;
-use crate::models::ALPHA_MIN_VALUE;
+use crate::models::Shape;
 use crate::pair::{Azimuth, Pair};
 use crate::plan::Lobe;
 use rayon::prelude::*;
@@ -155,25 +155,23 @@ impl<'a> Points<'a> {
     pub fn evaluate(&mut self, angles: &[Angles], values: &mut Vec<f32>) -> Result<()> {
         let alphas = self.lobes.iter().map(|lobe| {
             let missing = || Error::input(format!("{} needs a roughness", lobe.model.name));
-            if !lobe.model.has_roughness {
-                return Ok(0.0);
-            }
-            lobe.roughness.map(|r| r * r).ok_or_else(missing).and_then(in_range)
+            let Some(shape) = lobe.model.shape else { return Ok(0.0) };
+            in_range(&shape, shape.measure(lobe.roughness.ok_or_else(missing)?))
         });
         let setting = alphas.collect::<Result<Vec<_>>>()?;
         self.run(&[setting], angles, values)
     }
 
-    /// The same at each of some α, which takes the place of every lobe's roughness: the values of the first
-    /// α at all pairs, then those of the second. It takes less than one evaluation after the other, as the
+    /// The same at each of some α, the model's own measure of its shape, which takes the place of every lobe's
+    /// roughness: the values of the first α at all pairs, then those of the second. It takes less than one evaluation after the other, as the
     /// pairs' factors are made once.
     ///
     /// # Errors
     /// When angles are no directions, an α is none, or the device fails.
     pub fn sweep(&mut self, alphas: &[f64], angles: &[Angles], values: &mut Vec<f32>) -> Result<()> {
         let setting = |alpha: f64| -> Result<Vec<f64>> {
-            let alpha = in_range(alpha)?;
-            Ok(self.lobes.iter().map(|lobe| if lobe.model.has_roughness { alpha } else { 0.0 }).collect())
+            let lobes = self.lobes.iter();
+            lobes.map(|lobe| lobe.model.shape.map_or(Ok(0.0), |shape| in_range(&shape, alpha))).collect()
         };
         let settings = alphas.iter().map(|&alpha| setting(alpha)).collect::<Result<Vec<_>>>()?;
         self.run(&settings, angles, values)
@@ -218,7 +216,7 @@ const CPU_CHUNK: usize = 1 << 16;
 fn twins(lobes: &[Lobe], alphas: &[f64], (pair, azimuth): &(Pair, Azimuth), out: &mut [f32]) {
     let mut sums = [0.0; 3];
     for (lobe, &alpha) in lobes.iter().zip(alphas) {
-        let [a, b] = (lobe.model.lobe)(pair, azimuth, alpha);
+        let [a, b] = (lobe.model.lobe)(pair, azimuth, &lobe.setting(alpha));
         for (sum, [weight_a, weight_b]) in sums.iter_mut().zip(&lobe.weights) {
             *sum += weight_a * a + weight_b * b;
         }
@@ -228,12 +226,11 @@ fn twins(lobes: &[Lobe], alphas: &[f64], (pair, azimuth): &(Pair, Azimuth), out:
     }
 }
 
-/// α, if it has values.
-fn in_range(alpha: f64) -> Result<f64> {
-    if (ALPHA_MIN_VALUE..=1.0).contains(&alpha) {
+/// A measure of the shape, if it has values.
+fn in_range(&Shape { name, least, most, .. }: &Shape, alpha: f64) -> Result<f64> {
+    if (least..=most).contains(&alpha) {
         return Ok(alpha);
     }
-    Err(Error::input(format!(
-        "α = {alpha} is outside [{ALPHA_MIN_VALUE:e}, 1]: below it is a delta, without values"
-    )))
+    let delta = if least > 0.0 { ": below it is a delta, without values" } else { "" };
+    Err(Error::input(format!("{name} = {alpha} is outside [{least:e}, {most}]{delta}")))
 }

@@ -1,5 +1,6 @@
 //! Draws for the rules that sample: tabulated for all texels alike, or each texel's own.
 
+use crate::setting::Setting;
 use std::f64::consts::PI;
 
 /// Samples that one invocation sums. A driver may stop a loop at 65,535 turns and say nothing.
@@ -20,7 +21,7 @@ pub(crate) enum Sampler {
 pub(crate) struct SampleWork {
     pub sampler: Sampler,
     pub sampling: &'static crate::models::Sampling,
-    pub mirror_limit: fn(f64) -> [f64; 2],
+    pub mirror_limit: fn(f64, &Setting) -> [f64; 2],
     pub mus: Vec<f64>,
     /// Samples of a chunk.
     pub chunk: usize,
@@ -47,18 +48,18 @@ impl SampleWork {
     }
 
     /// The sum over a chunk, in f64.
-    pub fn sum(&self, row: usize, k: usize, alpha: f64) -> [f64; 2] {
+    pub fn sum(&self, row: usize, k: usize, setting: &Setting) -> [f64; 2] {
         let (column, chunk) = (k / self.chunks, k % self.chunks);
         let mu = self.mus[column];
         let add = |sum: [f64; 2], [a, b]: [f64; 2]| [sum[0] + a, sum[1] + b];
         let draws = || self.draws[chunk * self.chunk..][..self.chunk].iter().copied();
         match self.sampler {
-            Sampler::Ndf => draws().map(|draw| (self.sampling.ndf)(draw, mu, alpha)).fold([0.0; 2], add),
-            Sampler::Vndf => draws().map(|draw| (self.sampling.vndf)(draw, mu, alpha)).fold([0.0; 2], add),
+            Sampler::Ndf => draws().map(|draw| (self.sampling.ndf)(draw, mu, setting)).fold([0.0; 2], add),
+            Sampler::Vndf => draws().map(|draw| (self.sampling.vndf)(draw, mu, setting)).fold([0.0; 2], add),
             Sampler::Random => {
                 let mut pcg = Pcg::new((row * self.mus.len() + column) as u32, chunk as u32);
                 let draws = (0..self.chunk).map(|_| pcg.draw());
-                draws.map(|draw| (self.sampling.vndf)(draw, mu, alpha)).fold([0.0; 2], add)
+                draws.map(|draw| (self.sampling.vndf)(draw, mu, setting)).fold([0.0; 2], add)
             }
         }
     }

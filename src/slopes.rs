@@ -2,6 +2,7 @@
 
 use crate::models::{SlopeCounts, Slopes, is_fine};
 use crate::quadrature::{Node, gauss_legendre};
+use crate::setting::Setting;
 use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -33,15 +34,15 @@ pub(crate) const TILE_ALPHAS: usize = 4;
 pub(crate) const TILE_COLUMNS: usize = 8;
 
 impl SlopeWork {
-    pub fn new(slopes: &'static Slopes, mus: Vec<f64>, alphas: &[f64], tolerance: f64) -> Self {
+    pub fn new(slopes: &'static Slopes, mus: Vec<f64>, settings: &[Setting], tolerance: f64) -> Self {
         let (mut azimuths, mut nodes) = (Vec::new(), Vec::new());
         // Each rule that some tile takes, and where its azimuths and its nodes are.
         let mut rules = HashMap::new();
         let (mut azimuths_of, mut nodes_of) = (HashMap::new(), HashMap::new());
         let mut tiles = Vec::new();
-        for alphas in alphas.chunks(TILE_ALPHAS) {
+        for settings in settings.chunks(TILE_ALPHAS) {
             for (group, mus) in mus.chunks(TILE_COLUMNS).enumerate() {
-                let counts = most(mus, alphas, |mu, alpha| (slopes.counts)(mu, alpha, tolerance));
+                let counts = most(mus, settings, |mu, setting| (slopes.counts)(mu, setting, tolerance));
                 let side = |(sign, counts): (f64, SlopeCounts)| {
                     let first_azimuth = azimuths_of.entry((group, sign > 0.0, counts.azimuths));
                     let first_azimuth = *first_azimuth.or_insert_with(|| {
@@ -96,11 +97,15 @@ fn cost(tile: [Side; 2]) -> usize {
     tile.map(|side| side.counts.azimuths * side.counts.nodes).iter().sum()
 }
 
-/// The largest counts over all of (μ, α).
-fn most(mus: &[f64], alphas: &[f64], counts: impl Fn(f64, f64) -> [SlopeCounts; 2]) -> [SlopeCounts; 2] {
-    let all = mus.iter().flat_map(|&mu| alphas.iter().map(move |&alpha| (mu, alpha)));
+/// The largest counts over all of them.
+fn most(
+    mus: &[f64],
+    settings: &[Setting],
+    counts: impl Fn(f64, &Setting) -> [SlopeCounts; 2],
+) -> [SlopeCounts; 2] {
+    let all = mus.iter().flat_map(|&mu| settings.iter().map(move |setting| (mu, setting)));
     let one = SlopeCounts { azimuths: 1, nodes: 1 };
-    all.map(|(mu, alpha)| counts(mu, alpha)).fold([one; 2], |a, b| {
+    all.map(|(mu, setting)| counts(mu, setting)).fold([one; 2], |a, b| {
         [0, 1].map(|k| SlopeCounts {
             azimuths: a[k].azimuths.max(b[k].azimuths),
             nodes: a[k].nodes.max(b[k].nodes),

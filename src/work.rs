@@ -8,6 +8,7 @@ use crate::plan::{Lobe, Rule, TablePlan};
 use crate::quadrature::{Node, gauss_legendre, midpoint};
 use crate::quantity::Evaluation;
 use crate::sampling::{SampleWork, Sampler};
+use crate::setting::Setting;
 use crate::slopes::SlopeWork;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::iter;
@@ -35,7 +36,7 @@ pub(crate) enum Inner {
     /// Over δφ, for each pair of θ.
     Product { pairs: Vec<Pair>, azimuths: Vec<Azimuth> },
     /// In closed form, for each μ.
-    Analytic { directional: fn(f64, f64) -> [f64; 2], mus: Vec<f64> },
+    Analytic { directional: fn(f64, &Setting) -> [f64; 2], mus: Vec<f64> },
 }
 
 /// Nodes in √μ of ρ_hh for tolerances 1e-1 … 1e-10, measured for GGX: their error alone, worst over
@@ -45,8 +46,7 @@ const MEAN_NODES: [usize; 10] = [3, 4, 6, 8, 10, 16, 20, 32, 40, 48];
 impl Work {
     /// The work of `lobe` in `table`.
     pub fn new(table: &TablePlan, lobe: &Lobe) -> Self {
-        let alphas =
-            if lobe.model.has_roughness { table.alphas(lobe) } else { vec![0.0; table.alphas(lobe).len()] };
+        let alphas = table.alphas(lobe);
         let kind = match table.quantity.evaluation {
             Evaluation::Value => values(table),
             Evaluation::Directional => integrals(table, lobe, &directions(table), &[1.0]),
@@ -138,7 +138,8 @@ fn integrals(table: &TablePlan, lobe: &Lobe, thetas: &[f64], weights: &[f64]) ->
             smooth(gauss_cells(theta), gauss_azimuths(2 * phi))
         }
         (Rule::Warped, Integral::Slopes(slopes)) => {
-            let work = SlopeWork::new(slopes, mus(), &table.alphas(lobe), table.rule_tolerance());
+            let work =
+                SlopeWork::new(slopes, mus(), &lobe.settings(table.alphas(lobe)), table.rule_tolerance());
             WorkKind::Integrals { inner: Inner::Slopes(work), outer: weights.to_vec() }
         }
         (_, Integral::Delta(directional)) => WorkKind::Integrals {

@@ -32,10 +32,16 @@ fn gltf(roughness: [f64; 2], metallic: [f64; 2], base_color: [f64; 2]) -> Materi
     Material {
         name: "gltf".into(),
         lobes: vec![
-            MaterialLobe { model: "gltf_diffuse".into(), roughness: None, weights: weights() },
+            MaterialLobe {
+                model: "gltf_diffuse".into(),
+                roughness: None,
+                parameters: Vec::new(),
+                weights: weights(),
+            },
             MaterialLobe {
                 model: "ggx".into(),
                 roughness: Some(Distribution::uniform(min, max)),
+                parameters: Vec::new(),
                 weights: weights(),
             },
         ],
@@ -51,12 +57,12 @@ fn gltf(roughness: [f64; 2], metallic: [f64; 2], base_color: [f64; 2]) -> Materi
 fn every_model_keeps_its_promises_over_its_whole_range() {
     for model in MODELS {
         let mut parameters = Vec::new();
-        if model.has_roughness {
+        if model.shape.is_some() {
             parameters.push(Parameter::new("alpha", 1e-6, 1.0).unwrap());
         }
         let weights = model.components.iter().map(|c| Parameter::new(c.weight, 0.0, 1.0).unwrap());
         parameters.extend(weights);
-        let lobe = Lobe { model, roughness: Some(0.5), weights: vec![[0.0; 2]; 3] };
+        let lobe = Lobe::new(model, Some(0.5), vec![[0.0; 2]; 3]);
         let report = report(&mut Sum::model(device(), lobe, parameters).unwrap());
         assert!(report.findings.iter().all(|f| f.verdict == Verdict::Kept), "{}", model.name);
         assert!(report.find("energy").is_some());
@@ -75,7 +81,7 @@ fn every_model_keeps_its_promises_over_its_whole_range() {
 #[test]
 fn a_range_that_reaches_the_mirror_is_integrated_to_it() {
     let model = gonio::models::find("ggx").unwrap();
-    let lobe = Lobe { model, roughness: None, weights: vec![[1.0, 1.0]; 3] };
+    let lobe = Lobe::new(model, None, vec![[1.0, 1.0]; 3]);
     let range = Parameter::new("roughness", 0.0, 0.5).unwrap();
     let report = report(&mut Sum::model(device(), lobe, vec![range]).unwrap());
     assert!(report.is_kept() && report.notes[0].contains("0.001"), "{:?}", report.notes);

@@ -171,11 +171,7 @@ fn brdf(azimuths: usize) -> TablePlan {
 
 /// RGB of two lobes, the second added to the first.
 fn material() -> TablePlan {
-    let lobe = |name, roughness, weights: [[f64; 2]; 3]| Lobe {
-        model: model(name),
-        roughness,
-        weights: weights.to_vec(),
-    };
+    let lobe = |name, roughness, weights: [[f64; 2]; 3]| Lobe::new(model(name), roughness, weights.to_vec());
     TablePlan {
         subject: "paint".into(),
         channels: ["R", "G", "B"].map(String::from).to_vec(),

@@ -60,8 +60,7 @@ fn the_peak_is_exact_down_to_the_smallest_alpha() {
                 let tan2_m = (theta.sin() * (0.5 * mirror.delta_phi()).sin() / mu).powi(2);
                 let d = 1.0 / (PI * (alpha + tan2_m / alpha).powi(2));
                 let all = d / (4.0 * mu * mu * (1.0 + alpha * alpha * tan2).sqrt());
-                let lobe =
-                    Lobe { model: model("ggx"), roughness: Some(1.0), weights: vec![[1.0, 0.0], [1.0, 1.0]] };
+                let lobe = Lobe::new(model("ggx"), Some(1.0), vec![[1.0, 0.0], [1.0, 1.0]]);
                 let mut values = Vec::new();
                 Points::new(evaluator, &[lobe]).unwrap().sweep(&[alpha], &[mirror], &mut values).unwrap();
                 for (&value, exact) in values.iter().zip([all * one_minus_fc, all]) {
@@ -87,7 +86,7 @@ fn a_delta_is_refused() {
         assert!(table("ggx", Some(roughness)).contains("delta"), "{}", table("ggx", Some(roughness)));
     }
     for evaluator in evaluators() {
-        let lobe = |name: &str, roughness| Lobe { model: model(name), roughness, weights: vec![[1.0, 1.0]] };
+        let lobe = |name: &str, roughness| Lobe::new(model(name), roughness, vec![[1.0, 1.0]]);
         let refused = Points::new(evaluator, &[lobe("mirror", None)]).err().unwrap().to_string();
         assert!(refused.contains("delta and has no values"), "{refused}");
         let mut ggx = Points::new(evaluator, &[lobe("ggx", Some(0.0))]).unwrap();

@@ -148,6 +148,7 @@ fn scene(model: &str) -> Scene {
     let lobe = MaterialLobe {
         model: model.into(),
         roughness: Some(Distribution::constant(0.3)),
+        parameters: Vec::new(),
         weights: Weights::Constant([[0.5; 3], [0.0; 3]]),
     };
     let materials =
@@ -188,7 +189,7 @@ fn what_is_unbounded_has_no_integrals_and_says_why() {
     let error = TablePlan::basis("t", &RHO_DH, model, Some(0.5), axes()).unwrap_err().to_string();
     assert!(error.contains("beyond any bound") && error.contains("brdf"), "{error}");
     // It really breaks it.
-    assert!(model.reference.unwrap().rho_dh(0.01, 0.25)[0] > 1.0 && model.rho_bound.is_infinite());
+    assert!(model.reference.unwrap().rho_dh(0.01, &0.25.into())[0] > 1.0 && model.rho_bound.is_infinite());
 }
 
 /// Names that are none are refused with those that are.

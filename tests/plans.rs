@@ -12,8 +12,12 @@ use gonio::quantity::{BRDF, RHO_DH, SPLIT_SUM};
 use gonio::scene::{Distribution, Material, MaterialLobe, Scene, Weights};
 
 fn material(name: &str, model: &str, roughness: Option<Distribution>) -> Material {
-    let lobe =
-        MaterialLobe { model: model.into(), roughness, weights: Weights::Constant([[0.5; 3], [0.0; 3]]) };
+    let lobe = MaterialLobe {
+        model: model.into(),
+        roughness,
+        parameters: Vec::new(),
+        weights: Weights::Constant([[0.5; 3], [0.0; 3]]),
+    };
     Material { name: name.into(), lobes: vec![lobe], metallic: None, base_color: None }
 }
 

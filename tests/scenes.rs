@@ -435,7 +435,10 @@ fn the_commented_recipe_is_read() {
         (plaster.rule, &plaster.axes[0].values),
         (Some(Rule::Grid { theta: 256, phi: 512 }), &vec![0.0, 0.5, 1.0, 1.5])
     );
-    assert_eq!(average.subject, SubjectRequest::Basis { model: "ggx".into(), roughness: Some(0.5) });
+    assert_eq!(
+        average.subject,
+        SubjectRequest::Basis { model: "ggx".into(), roughness: Some(0.5), parameters: Vec::new() }
+    );
     assert!(brdf.place.contains("recipe.toml: line "));
 }
 

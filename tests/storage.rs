@@ -145,7 +145,7 @@ fn the_stated_maximum_bounds_what_a_reader_meets() {
         {
             let (mu, r) = (1.0 / 256.0 + (1.0 - 1.0 / 256.0) * u.powi(3), 0.05 + 0.95 * v * v);
             let ((x, fx), (y, fy)) = (place(mu, columns), place(r, rows));
-            let truth = reference::Reference::rho_dh(reference::GGX, mu, r * r);
+            let truth = reference::Reference::rho_dh(reference::GGX, mu, &(r * r).into());
             for (c, truth) in truth.into_iter().enumerate() {
                 let at = |y: usize, x: usize| table.value(y * columns + x, c);
                 let low = at(y, x) * (1.0 - fx) + at(y, x + 1) * fx;

@@ -11,6 +11,7 @@ struct Job {
     nodes: u32,
     tiles: u32,
     alpha: f32,               // of a list of points
+    parameters: array<vec4f, 4>, // of the lobe, by place; then what f32 drops of them
 }
 
 const INV_PI: real = 0.3183098861837907;
@@ -31,6 +32,12 @@ fn weights() -> Weights {
         real2(w[1].xy) + real2(w[1].zw),
         real2(w[2].xy) + real2(w[2].zw),
     );
+}
+
+/// A parameter of the lobe beside its shape, by the place that its part has.
+fn parameter(place: u32) -> real {
+    let p = job.parameters;
+    return real(p[place / 4u][place % 4u]) + real(p[2u + place / 4u][place % 4u]);
 }
 
 fn channel(weight: real2, ab: real2) -> real {

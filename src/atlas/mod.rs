@@ -30,10 +30,11 @@ pub use write::{to_json, write};
 
 use crate::bake::{Evaluator, Observer};
 use crate::error::{Error, Result};
-use crate::models::Model;
+use crate::models::{Model, Shape};
 use crate::plan::Lobe;
 use crate::points::{Angles, Points};
 use crate::reference;
+use crate::setting::Setting;
 use band::{Subject, Tally, measure};
 use serde::Serialize;
 
@@ -127,8 +128,8 @@ pub fn measure_model(
     })?;
     let unit = [[1.0, 0.0], [0.0, 1.0]];
     let channels = model.components.len();
-    let lobe =
-        Lobe { model, roughness: model.has_roughness.then_some(1.0), weights: unit[..channels].to_vec() };
+    let lobe = Lobe::new(model, model.shape.map(|_| 1.0), unit[..channels].to_vec());
+    let parameters = lobe.parameters;
     let mut points = Points::new(evaluator, &[lobe])?;
     let name = |channel: usize, alpha: f64| {
         // The component alone, in the words of gonio eval.
@@ -136,7 +137,7 @@ pub fn measure_model(
             format!(" --set {}={}", component.weight, u8::from(k == channel))
         };
         let weights: String = model.components.iter().enumerate().map(weight).collect();
-        let alpha = if model.has_roughness { format!(" --set alpha={alpha:?}") } else { String::new() };
+        let alpha = model.shape.map_or(String::new(), |shape| format!(" --set {}={alpha:?}", shape.name));
         format!("--model {}{alpha}{weights}", model.name)
     };
     let mut subject = Subject {
@@ -145,18 +146,24 @@ pub fn measure_model(
         reference: &|angles: &Angles, alpha| {
             let Angles { theta_i, theta_e, .. } = *angles;
             let angles = reference::Angles { theta_i, theta_e, delta_phi: angles.delta_phi() };
-            reference.brdf(&angles, alpha).unwrap_or([f64::NAN; 2])
+            reference.brdf(&angles, &Setting { alpha, parameters }).unwrap_or([f64::NAN; 2])
         },
         name: &name,
     };
-    // A model without α has the same values at each.
-    let alphas = if model.has_roughness { alphas() } else { vec![1.0] };
+    // A model without a shape has the same values at each; wide lobes have no decades.
+    let alphas = match model.shape {
+        None => vec![1.0],
+        Some(Shape { least, most, .. }) => {
+            let scaled = alphas().into_iter().map(|alpha| most * alpha);
+            scaled.filter(|&alpha| alpha >= least).collect()
+        }
+    };
     let angles = directions::everywhere((budget as usize / (alphas.len() * channels)).max(1));
     let tallies = measure(&mut subject, &alphas, &angles, &|share| observer.advance(0.9 * share))?;
 
-    let alpha_of = |alpha| model.has_roughness.then_some(alpha);
+    let alpha_of = |alpha| model.shape.map(|_| alpha);
     let mut page = page(model.name, model.source, &alphas, tallies, true);
-    if !model.has_roughness {
+    if model.shape.is_none() {
         page.alphas.clear();
         page.decades.iter_mut().for_each(|band| band.alpha = None);
     }

@@ -87,8 +87,7 @@ pub fn study(evaluator: &Evaluator, budget: u64, observer: &dyn Observer) -> Res
     observer.begin("study of angles");
     let model = models::find("ggx")?;
     // F0 = F90 = 1: no Fresnel.
-    let mut points =
-        Points::new(evaluator, &[Lobe { model, roughness: Some(1.0), weights: vec![[1.0; 2]] }])?;
+    let mut points = Points::new(evaluator, &[Lobe::new(model, Some(1.0), vec![[1.0; 2]])])?;
     let own = |alpha: f64, angles: &[Angles], values: &mut Vec<f32>| points.sweep(&[alpha], angles, values);
     forms.push(form(OWN, "shaders/pair.wgsl", budget, own, observer)?);
     Ok(forms)
@@ -112,7 +111,7 @@ fn form(
         reference: &|angles, alpha| {
             let Angles { theta_i, theta_e, .. } = *angles;
             let angles = reference::Angles { theta_i, theta_e, delta_phi: angles.delta_phi() };
-            GGX.brdf(&angles, alpha).map_or([f64::NAN; 2], |[a, b]| [a + b, 0.0])
+            GGX.brdf(&angles, &alpha.into()).map_or([f64::NAN; 2], |[a, b]| [a + b, 0.0])
         },
         name: &|_, alpha| format!("--model ggx --set alpha={alpha:?} --set f0=1 --set f90=1"),
     };

@@ -2,7 +2,7 @@
 
 use super::{HEADING, print, print_json};
 use crate::error::Result;
-use crate::models::{self, ALPHA_MIN_VALUE, Component, FRESNELS, Integral, MASKINGS, MODELS, Model, Term};
+use crate::models::{self, Component, FRESNELS, Integral, MASKINGS, MODELS, Model, Shape, Term};
 use serde_json::{Value, json};
 
 #[derive(clap::Args)]
@@ -83,28 +83,36 @@ fn one(model: &Model, as_json: bool) -> Result<()> {
     promises.iter().try_for_each(|promise| print(&format!("  {promise}")))
 }
 
+const DIMENSIONLESS: &str = "dimensionless";
+
 fn parameters(model: &Model) -> Vec<Parameter> {
     let mut all = Vec::new();
-    if model.has_roughness {
-        let what = format!(
-            "alpha = roughness², the slope of the microfacets; values from alpha = {ALPHA_MIN_VALUE:e}"
-        );
+    if let Some(Shape { name, summary, unit, most, least, .. }) = model.shape {
+        let values = if least > 0.0 { format!("; values from {name} = {least:e}") } else { String::new() };
         all.push(Parameter {
             name: "roughness",
             range: "[0, 1]".into(),
-            unit: "dimensionless",
+            unit: DIMENSIONLESS,
             default: None,
-            what,
+            what: format!("{summary}{values}"),
         });
-        let what = "in place of roughness: one of the two is needed".into();
-        all.push(Parameter {
-            name: "alpha",
-            range: "[0, 1]".into(),
-            unit: "dimensionless",
-            default: None,
-            what,
-        });
+        if name != "roughness" {
+            all.push(Parameter {
+                name,
+                range: format!("[0, {most}]"),
+                unit: if unit.is_empty() { DIMENSIONLESS } else { unit },
+                default: None,
+                what: "in place of roughness: one of the two is needed".into(),
+            });
+        }
     }
+    all.extend(model.parameters().map(|p| Parameter {
+        name: p.name,
+        range: format!("[{}, {}]", p.range[0], p.range[1]),
+        unit: if p.unit.is_empty() { DIMENSIONLESS } else { p.unit },
+        default: p.default.map(|x| x.to_string()),
+        what: p.summary.into(),
+    }));
     if let Some(made) = model.microfacet {
         for (name, terms, term) in
             [("masking", &MASKINGS[..], &made.masking), ("fresnel", &FRESNELS[..], &made.fresnel)]
@@ -122,7 +130,7 @@ fn parameters(model: &Model) -> Vec<Parameter> {
     all.extend(model.components.iter().map(|&Component { name, weight, default }| Parameter {
         name: weight,
         range: "[0, 1], or three for R, G, B".into(),
-        unit: "dimensionless",
+        unit: DIMENSIONLESS,
         default: default.map(|x| x.to_string()),
         what: format!("what weighs component {name}"),
     }));

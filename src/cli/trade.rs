@@ -94,7 +94,7 @@ fn table(args: &Args) -> Result<TablePlan> {
     let Some(path) = &args.recipe else {
         let quantity = quantity::find(args.quantity.as_deref().unwrap_or("split_sum"))?;
         let model = models::find(args.model.as_deref().unwrap_or("ggx"))?;
-        let rough = model.has_roughness.then_some(Variable::Roughness);
+        let rough = model.shape.map(|_| Variable::Roughness);
         let variables = rough.into_iter().chain(quantity.variables.iter().copied());
         let axes = variables.map(|v| Axis::natural(v, args.size)).collect::<Result<_>>()?;
         return TablePlan::basis(format!("{}.{}", model.name, quantity.name), quantity, model, None, axes);

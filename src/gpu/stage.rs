@@ -76,6 +76,7 @@ pub(super) struct Job {
     pub nodes: u32,
     pub tiles: u32,
     pub alpha: f32,
+    pub parameters: [[f32; 4]; 4],
 }
 
 impl Stages {
@@ -109,7 +110,8 @@ impl Stages {
                 let inner = Stage { model: Some(lobe.model), per_unit: inner.count(), ..stage };
                 // A texel that is one inner integral needs no sum.
                 if let (&[weight], false) = (&outer[..], accumulate) {
-                    let job = Job { weights: Job::new(lobe, weight).weights, ..inner.job };
+                    let Job { weights, parameters, .. } = Job::new(lobe, weight);
+                    let job = Job { weights, parameters, ..inner.job };
                     return Ok(Self { inner: Stage { channels, job, ..inner }, sum: None });
                 }
                 let sum = Stage {
@@ -240,16 +242,22 @@ fn gcd(a: usize, b: usize) -> usize {
 }
 
 impl Job {
-    /// The channels' weights, times `scale`.
+    /// The channels' weights, times `scale`, and the lobe's parameters.
     pub fn new(lobe: &Lobe, scale: f64) -> Self {
+        // What f32 drops is kept for kernels in f64.
+        let rest: fn(f64) -> f32 = |x| (x - f64::from(x as f32)) as f32;
         let mut weights = [[0.0; 4]; 3];
         for (row, &weight) in weights.iter_mut().zip(&lobe.weights) {
             let [a, b] = weight.map(|x| scale * x);
-            // What f32 drops is kept for kernels in f64.
-            let rest = |x: f64| (x - f64::from(x as f32)) as f32;
             *row = [a as f32, b as f32, rest(a), rest(b)];
         }
-        Self { weights, ..Self::zeroed() }
+        let mut parameters = lobe.parameters;
+        (lobe.model.derive)(&mut parameters);
+        let at = |k: usize| [0, 1, 2, 3].map(|j| parameters[4 * k + j]);
+        let (first, second) = (at(0), at(1));
+        let [value, rest] = [|x: f64| x as f32, rest];
+        let parameters = [first.map(value), second.map(value), first.map(rest), second.map(rest)];
+        Self { weights, parameters, ..Self::zeroed() }
     }
 }
 

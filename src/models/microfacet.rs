@@ -9,10 +9,11 @@ use super::masking::{
     Masking, none::Unmasked, smith_correlated::SmithCorrelated, smith_separable::SmithSeparable,
 };
 use super::ndf::{Map, Ndf, ggx::Ggx};
-use super::{Integral, Model, Part, Sampling, SlopeCounts, SlopeMap, Slopes, Term, is_fine, part};
+use super::{Integral, Model, Part, Sampling, Shape, SlopeCounts, SlopeMap, Slopes, Term, is_fine, part};
 use crate::error::{Error, Result};
 use crate::pair::{Azimuth, Half, Pair};
 use crate::reference;
+use crate::setting::Setting;
 use std::marker::PhantomData;
 use std::sync::LazyLock;
 
@@ -120,7 +121,13 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         source: N::TERM.source,
         microfacet: Some(&Self::TERMS),
         components: F::COMPONENTS,
-        has_roughness: true,
+        shape: Some(Shape::ALPHA),
+        parameters: &[N::PARAMETERS, M::PARAMETERS, F::PARAMETERS],
+        derive: |parameters| {
+            N::derive(parameters);
+            M::derive(parameters);
+            F::derive(parameters);
+        },
         rho_bound: if M::UNBOUNDED.is_some() { f64::INFINITY } else { 1.0 },
         parts: &Self::PARTS,
         integral: match M::UNBOUNDED {
@@ -142,40 +149,38 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         coarse: SlopeMap {
             part: N::COARSE,
             end: N::coarse_end,
-            integrand: |r, azimuth, mu_e, alpha| {
-                Self::integrand(N::coarse_map(r, alpha), azimuth, mu_e, alpha)
-            },
+            integrand: |r, azimuth, mu_e, s| Self::integrand(N::coarse_map(r, s), azimuth, mu_e, s),
         },
         fine: SlopeMap {
             part: N::FINE,
             end: N::fine_end,
-            integrand: |r, azimuth, mu_e, alpha| Self::integrand(N::fine_map(r, alpha), azimuth, mu_e, alpha),
+            integrand: |r, azimuth, mu_e, s| Self::integrand(N::fine_map(r, s), azimuth, mu_e, s),
         },
         counts: Self::counts,
-        mirror_limit: |mu_e| F::fresnel(mu_e, 1.0 - mu_e),
+        mirror_limit: |mu_e, s| F::fresnel(mu_e, 1.0 - mu_e, s),
         sampling: Sampling { part: N::SAMPLES, ndf: N::by_ndf::<M, F>, vndf: N::by_vndf::<M, F> },
     };
 
     /// The NDF's error model is for correlated Smith; its fine map has nodes to spare for the rest.
-    fn counts(mu: f64, alpha: f64, tolerance: f64) -> [SlopeCounts; 2] {
-        let [near, far] = N::counts(mu, alpha, tolerance);
+    fn counts(mu: f64, s: &Setting, tolerance: f64) -> [SlopeCounts; 2] {
+        let [near, far] = N::counts(mu, s, tolerance);
         [if is_fine(tolerance) { near } else { M::near(near) }, far]
     }
 
-    fn lobe(p: &Pair, a: &Azimuth, alpha: f64) -> [f64; 2] {
+    fn lobe(p: &Pair, a: &Azimuth, setting: &Setting) -> [f64; 2] {
         let h = Half::new(p, a);
-        let s = N::ndf(&h, p.hz2, alpha) * M::visibility::<N>(p.mu_i, p.mu_e, alpha);
-        F::fresnel(h.c, h.one_minus_c).map(|f| f * s)
+        let s = N::ndf(&h, p.hz2, setting) * M::visibility::<N>(p.mu_i, p.mu_e, setting);
+        F::fresnel(h.c, h.one_minus_c, setting).map(|f| f * s)
     }
 
-    fn integrand(map: Map, [mu_c, t_max, t_max_inverse]: [f64; 3], mu_e: f64, alpha: f64) -> [f64; 2] {
+    fn integrand(map: Map, [mu_c, t_max, t_max_inverse]: [f64; 3], mu_e: f64, s: &Setting) -> [f64; 2] {
         let Map { p, m, weight } = map;
         let projected = mu_e * m + mu_c * p; // ωe·ωm √y
         let y = m * m + p * p;
         let x = (t_max * m - p) * (p + t_max_inverse * m); // cos θi = μe x/y
-        let all = 2.0 * x * projected * weight / M::masking::<N>(x, y, mu_e, alpha);
+        let all = 2.0 * x * projected * weight / M::masking::<N>(x, y, mu_e, s);
         let c = (projected / y.sqrt()).min(1.0);
-        F::fresnel(c, 1.0 - c).map(|f| f * all)
+        F::fresnel(c, 1.0 - c, s).map(|f| f * all)
     }
 }
 
@@ -217,7 +222,7 @@ mod tests {
                 let mut rules = BTreeSet::new();
                 for (i, j) in (0..240).flat_map(|i| (0..400).map(move |j| (i, j))) {
                     let (mu, alpha) = (2f64.powf(-0.1 * f64::from(i)), 2f64.powf(-0.1 * f64::from(j)));
-                    rules.extend((slopes.counts)(mu, alpha, tolerance).map(|counts| counts.nodes));
+                    rules.extend((slopes.counts)(mu, &alpha.into(), tolerance).map(|counts| counts.nodes));
                 }
                 let nodes: usize = rules.iter().sum();
                 assert!(nodes <= 2048, "{} at {tolerance}: {nodes} nodes", model.name);
@@ -231,7 +236,7 @@ mod tests {
     fn the_error_model_holds_for_every_combination() {
         for model in MICROFACETS.iter() {
             let Integral::Slopes(slopes) = model.integral else { continue };
-            let rule = |mu: f64, alpha: f64, tolerance: f64, counts: [SlopeCounts; 2]| {
+            let rule = |mu: f64, s: &Setting, tolerance: f64, counts: [SlopeCounts; 2]| {
                 let map = slopes.map(tolerance);
                 let mut sum = [0.0; 2];
                 for (sign, counts) in [1.0, -1.0].into_iter().zip(counts) {
@@ -239,9 +244,9 @@ mod tests {
                     for [c, t_max, inverse, weight] in
                         side(mu, sign, &gauss_legendre(counts.azimuths), tolerance)
                     {
-                        let end = (map.end)(t_max, alpha);
+                        let end = (map.end)(t_max, s);
                         for node in &nodes {
-                            let f = (map.integrand)(end * node.x, [c, t_max, inverse], mu, alpha);
+                            let f = (map.integrand)(end * node.x, [c, t_max, inverse], mu, s);
                             let weight = weight * end * node.weight;
                             sum = [sum[0] + weight * f[0], sum[1] + weight * f[1]];
                         }
@@ -255,11 +260,12 @@ mod tests {
                     // Additive recurrences of two irrationals: even over both logarithms.
                     let (u, v) = ((k as f64 * 0.754_877_666).fract(), (k as f64 * 0.569_840_291).fract());
                     let (mu, alpha) = (2f64.powf(-24.0 * u * u), 2f64.powf(-20.0 * v * v));
-                    let exact = rule(mu, alpha, 1e-10, [SlopeCounts { azimuths: 100, nodes: 160 }; 2]);
+                    let setting = Setting { alpha, parameters: model.defaults() };
+                    let exact = rule(mu, &setting, 1e-10, [SlopeCounts { azimuths: 100, nodes: 160 }; 2]);
                     std::array::from_fn(|d| {
                         let tolerance = 10f64.powi(-1 - d as i32);
                         assert_eq!(decade(tolerance), d);
-                        let [a, b] = rule(mu, alpha, tolerance, (slopes.counts)(mu, alpha, tolerance));
+                        let [a, b] = rule(mu, &setting, tolerance, (slopes.counts)(mu, &setting, tolerance));
                         (a - exact[0]).abs().max((b - exact[1]).abs()) / tolerance
                     })
                 })

@@ -16,6 +16,8 @@ pub use microfacet::{FRESNELS, MASKINGS, MICROFACETS, Microfacet};
 use crate::error::{Error, Result};
 use crate::pair::{Azimuth, Pair};
 use crate::reference::Reference;
+use crate::setting::{Parameters, Setting};
+use std::f64::consts::FRAC_PI_2;
 
 /// A reflection model: f = a·A + b·B with weights that a material gives and components that the
 /// model evaluates, so that colours never enter a basis.
@@ -30,8 +32,12 @@ pub struct Model {
     pub microfacet: Option<&'static Microfacet>,
     /// Its components: `A` alone, or `A` and `B` where Fresnel splits it.
     pub components: &'static [Component],
-    /// Whether it takes a roughness (α = roughness²).
-    pub has_roughness: bool,
+    /// What its roughness is, if it takes one.
+    pub shape: Option<Shape>,
+    /// The rest of its parameters, part by part.
+    pub parameters: &'static [&'static [Parameter]],
+    /// What shaders get of them: each in its place, and what the host derives in f64 beside it.
+    pub(crate) derive: fn(&mut Parameters),
     /// The bound on ρ_dh = ∫ (A + B) cos θ dω that the model promises; 1 conserves energy, more is a
     /// [`Violation`] that it declares, and infinity is no promise.
     pub rho_bound: f64,
@@ -41,7 +47,7 @@ pub struct Model {
     pub integral: Integral,
     /// (A, B) in f64, in the shader's own formulas: the evaluation of the CPU path. Of a delta, its
     /// mean over a cell.
-    pub(crate) lobe: fn(&Pair, &Azimuth, alpha: f64) -> [f64; 2],
+    pub(crate) lobe: fn(&Pair, &Azimuth, &Setting) -> [f64; 2],
     /// The independent f64 reference.
     pub reference: Option<&'static dyn Reference>,
 }
@@ -67,6 +73,40 @@ pub struct Component {
     pub weight: &'static str,
     /// The weight where a recipe gives none; `None`: it must.
     pub default: Option<f64>,
+}
+
+/// How rough a lobe is: every model takes a perceptual roughness in [0, 1], and evaluates its own measure of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shape {
+    /// What recipes may give in place of the roughness: `alpha`; `roughness` where that is what it evaluates.
+    pub name: &'static str,
+    /// One line for people.
+    pub summary: &'static str,
+    /// Empty: dimensionless.
+    pub unit: &'static str,
+    /// The measure at roughness 1; it is 0 at 0.
+    pub most: f64,
+    /// The least measure that has values: below it, the lobe is a delta as far as f32 goes. 0: all have.
+    pub least: f64,
+    /// The power of the roughness in it: measure = most · roughnessᵖ.
+    power: i32,
+}
+
+/// A number that a model takes beside its roughness and the weights of its components.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameter {
+    /// The name in recipes.
+    pub name: &'static str,
+    /// One line for people.
+    pub summary: &'static str,
+    /// Empty: dimensionless.
+    pub unit: &'static str,
+    /// The least and the most.
+    pub range: [f64; 2],
+    /// Where a recipe gives none; `None`: it must.
+    pub default: Option<f64>,
+    /// Where shaders find it: see [`Parameters`].
+    pub(crate) place: usize,
 }
 
 /// A part that recipes choose by its name.
@@ -100,7 +140,7 @@ pub enum Integral {
     /// meet a tolerance.
     Smooth(fn(tolerance: f64) -> [usize; 2]),
     /// In closed form: (A, B) of ρ(μ). Such a model is a delta and has no values.
-    Delta(fn(mu: f64, alpha: f64) -> [f64; 2]),
+    Delta(fn(mu: f64, &Setting) -> [f64; 2]),
     /// Not at all, and why: ρ has no bound, so that no absolute tolerance holds. Such a model has values
     /// alone.
     Unbounded(&'static str),
@@ -113,9 +153,9 @@ pub struct Slopes {
     /// That of finer ones.
     pub(crate) fine: SlopeMap,
     /// What a texel takes to meet a tolerance, where cos φ > 0 and where it is < 0.
-    pub(crate) counts: fn(mu: f64, alpha: f64, tolerance: f64) -> [SlopeCounts; 2],
+    pub(crate) counts: fn(mu: f64, &Setting, tolerance: f64) -> [SlopeCounts; 2],
     /// What α → 0 tends to.
-    pub(crate) mirror_limit: fn(mu_e: f64) -> [f64; 2],
+    pub(crate) mirror_limit: fn(mu_e: f64, &Setting) -> [f64; 2],
     /// What peers do in place of all that.
     pub(crate) sampling: Sampling,
 }
@@ -133,9 +173,9 @@ pub(crate) struct SlopeMap {
     /// Its shader.
     pub part: Part,
     /// The end of the map at a horizon tan θm = t_max.
-    pub end: fn(t_max: f64, alpha: f64) -> f64,
+    pub end: fn(t_max: f64, &Setting) -> f64,
     /// The integrand at r, for an azimuth (μe c, t_max, 1/t_max).
-    pub integrand: fn(r: f64, azimuth: [f64; 3], mu_e: f64, alpha: f64) -> [f64; 2],
+    pub integrand: fn(r: f64, azimuth: [f64; 3], mu_e: f64, &Setting) -> [f64; 2],
 }
 
 /// Importance sampling of a microfacet lobe: (A, B) of f μi / p for a draw of two numbers, the second
@@ -144,9 +184,9 @@ pub(crate) struct Sampling {
     /// The functions that the sampling kernels call.
     pub part: Part,
     /// Of the normals' distribution.
-    pub ndf: fn(draw: [f64; 2], mu_e: f64, alpha: f64) -> [f64; 2],
+    pub ndf: fn(draw: [f64; 2], mu_e: f64, &Setting) -> [f64; 2],
     /// Of the normals that ωe sees.
-    pub vndf: fn(draw: [f64; 2], mu_e: f64, alpha: f64) -> [f64; 2],
+    pub vndf: fn(draw: [f64; 2], mu_e: f64, &Setting) -> [f64; 2],
 }
 
 /// The smallest α > 0 that has values: below it, f of both directions at grazing would leave f32.
@@ -210,7 +250,74 @@ impl Component {
     }
 }
 
+impl Shape {
+    /// α = roughness², the slope of microfacets: α → 0 is the mirror.
+    const ALPHA: Self = Self {
+        name: "alpha",
+        summary: "the slope of the microfacets, alpha = roughness²",
+        unit: "",
+        most: 1.0,
+        least: ALPHA_MIN_VALUE,
+        power: 2,
+    };
+
+    /// The roughness as it is.
+    #[expect(dead_code, reason = "diffuse models that are being written take it")]
+    const ROUGHNESS: Self = Self {
+        name: "roughness",
+        summary: "the roughness as it is",
+        unit: "",
+        most: 1.0,
+        least: 0.0,
+        power: 1,
+    };
+
+    /// σ of slopes as angles, rad.
+    #[expect(dead_code, reason = "diffuse models that are being written take it")]
+    const SIGMA: Self = Self {
+        name: "sigma",
+        summary: "the standard deviation of the facets' slope angle, sigma = π/2 · roughness",
+        unit: "rad",
+        most: FRAC_PI_2,
+        least: 0.0,
+        power: 1,
+    };
+
+    /// The model's own measure of a roughness.
+    pub fn measure(&self, roughness: f64) -> f64 {
+        self.most * roughness.powi(self.power)
+    }
+
+    /// The roughness of a measure.
+    pub fn roughness(&self, measure: f64) -> f64 {
+        let share = measure / self.most;
+        if self.power == 2 { share.sqrt() } else { share }
+    }
+}
+
 impl Model {
+    /// The parameters beside the roughness and the components' weights.
+    pub fn parameters(&self) -> impl Iterator<Item = &'static Parameter> + use<> {
+        self.parameters.iter().copied().flatten()
+    }
+
+    /// All of them at their defaults; those that have none at the least that they take.
+    pub fn defaults(&self) -> Parameters {
+        let mut parameters = [0.0; 8];
+        self.parameters().for_each(|p| parameters[p.place] = p.default.unwrap_or(p.range[0]));
+        parameters
+    }
+
+    /// The model's own measure of a roughness; 0 where it takes none.
+    pub fn measure(&self, roughness: f64) -> f64 {
+        self.shape.map_or(0.0, |shape| shape.measure(roughness))
+    }
+
+    /// Whether a lobe of this roughness is a delta, as far as values go.
+    pub fn is_delta_at(&self, roughness: f64) -> bool {
+        self.is_delta() || self.shape.is_some_and(|shape| shape.measure(roughness) < shape.least)
+    }
+
     /// Whether this is a delta: no values, only integrals.
     pub fn is_delta(&self) -> bool {
         matches!(self.integral, Integral::Delta(_))

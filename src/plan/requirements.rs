@@ -3,13 +3,16 @@
 use super::{DEFAULT_TOLERANCE, Lobe, Rule, TablePlan};
 use crate::axis::{Axis, Mapping, Positions, Variable};
 use crate::error::{Error, Result};
-use crate::models::{self, ALPHA_MIN_VALUE, Integral, MODELS, Model};
+use crate::models::{self, Integral, MODELS, Model};
 use crate::optimise::optimise;
 use crate::quantity::{self, BRDF, Evaluation, QUANTITIES, Quantity, RHO_DH};
-use crate::scene::{Distribution, LeftOut, Material, Scene, SubjectRequest, TableRequest, Weights};
+use crate::scene::{
+    Distribution, LeftOut, Material, MaterialLobe, Scene, SubjectRequest, TableRequest, Weights,
+};
+use crate::setting::Parameters;
 use crate::storage::Storage;
 use serde::Serialize;
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 use std::fmt;
 
 /// Everything that a scene requires, and what it does not.
@@ -36,6 +39,9 @@ pub struct Basis {
     pub model: String,
     /// [min, max] of its perceptual roughness.
     pub roughness: Option<[f64; 2]>,
+    /// Its other parameters.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub parameters: BTreeMap<&'static str, f64>,
 }
 
 /// A material: f = Σ weights · basis.
@@ -60,8 +66,11 @@ pub struct MaterialPlan {
 pub struct BasisWeight {
     /// The model's name.
     pub basis: String,
+    /// Its other parameters.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub parameters: BTreeMap<&'static str, f64>,
     /// The weight of each component, by the component's name.
-    pub components: std::collections::BTreeMap<String, Weight>,
+    pub components: BTreeMap<String, Weight>,
 }
 
 /// One weight.
@@ -142,8 +151,9 @@ impl Plan {
             }
         }
         let bases: Vec<_> =
-            plan.tables.iter().filter(|table| table.is_basis()).map(|t| t.lobes[0].model).collect();
-        bases.into_iter().for_each(|model| plan.require_basis(model, None));
+            plan.tables.iter().filter(|table| table.is_basis()).map(|t| &t.lobes[0]).collect();
+        let bases: Vec<_> = bases.into_iter().map(|lobe| (lobe.model, lobe.parameters)).collect();
+        bases.into_iter().for_each(|(model, parameters)| plan.require_basis(model, &parameters, None));
         plan.describe(&materials)?;
         for model in MODELS {
             if !plan.bases.iter().any(|basis| basis.model == model.name) {
@@ -164,17 +174,23 @@ impl Plan {
     fn require_defaults(&mut self, materials: &[&Material], tolerance: f64) -> Result<()> {
         for model in models::all() {
             let lobes = || materials.iter().flat_map(|m| &m.lobes).filter(|lobe| lobe.model == model.name);
-            if lobes().next().is_none() {
-                continue;
+            let mut settings: Vec<Parameters> = Vec::new();
+            for (parameters, _) in lobes().flat_map(|lobe| settings_of(lobe, model)) {
+                if !settings.contains(&parameters) {
+                    settings.push(parameters);
+                }
             }
-            let range = Distribution::union(lobes().filter_map(|lobe| lobe.roughness.as_ref()));
-            for quantity in QUANTITIES {
-                let Some(axes) = self.default_axes(model.name, model, quantity, range.as_ref())? else {
-                    continue;
-                };
-                let name = format!("{}.{}", model.name, quantity.name);
-                self.tables
-                    .push(TablePlan::basis(name, quantity, model, None, axes)?.with_tolerance(tolerance));
+            for parameters in settings {
+                let with = |lobe: &&MaterialLobe| settings_of(lobe, model).iter().any(|s| s.0 == parameters);
+                let range = Distribution::union(lobes().filter(with).filter_map(|l| l.roughness.as_ref()));
+                for quantity in QUANTITIES {
+                    let Some(axes) = self.default_axes(model.name, model, quantity, range.as_ref())? else {
+                        continue;
+                    };
+                    let name = format!("{}.{}", model.name, quantity.name);
+                    let table = TablePlan::basis(name, quantity, model, None, axes)?;
+                    self.tables.push(table.with_places(parameters).with_tolerance(tolerance));
+                }
             }
         }
         for material in materials {
@@ -187,9 +203,7 @@ impl Plan {
             };
             for quantity in [&BRDF, &RHO_DH] {
                 let what = format!("{}.{}", material.name, quantity.name);
-                let delta = |lobe: &Lobe| {
-                    lobe.model.is_delta() || lobe.model.has_roughness && is_mirror(lobe.roughness)
-                };
+                let delta = |lobe: &Lobe| lobe.model.is_delta_at(lobe.roughness.unwrap_or(0.0));
                 if quantity.evaluation == Evaluation::Value && lobes.iter().any(delta) {
                     self.leave_out(what, "a lobe of it is a delta and has no values");
                     continue;
@@ -231,8 +245,8 @@ impl Plan {
                 let mut values: Vec<_> = [0.0, 0.25, 0.5, 0.75, 1.0].map(|q| range.quantile(q)).to_vec();
                 // The quantile at 0 is the least value with weight: the minimum.
                 values.dedup();
-                if values.iter().any(|&r| is_mirror(Some(r))) {
-                    values.retain(|&r| !is_mirror(Some(r)));
+                if values.iter().any(|&r| model.is_delta_at(r)) {
+                    values.retain(|&r| !model.is_delta_at(r));
                     self.leave_out(
                         format!("{subject}.{} at roughness {min}", quantity.name),
                         "the lobe is a delta there and has no values",
@@ -266,14 +280,20 @@ impl Plan {
             };
             for lobe in &material.lobes {
                 let model = models::find(&lobe.model)?;
-                self.require_basis(model, lobe.roughness.as_ref());
-                let weight = |k: usize| match &lobe.weights {
-                    Weights::Constant(weights) => Weight::Constant(weights[k]),
-                    Weights::Textured(formulas) => Weight::Textured(formulas[k].clone()),
-                };
-                let components =
-                    model.components.iter().enumerate().map(|(k, c)| (c.name.to_string(), weight(k)));
-                plan.weights.push(BasisWeight { basis: model.name.into(), components: components.collect() });
+                for (places, of) in settings_of(lobe, model) {
+                    self.require_basis(model, &places, lobe.roughness.as_ref());
+                    let weight = |k: usize| match &lobe.weights {
+                        Weights::Constant(weights) => Weight::Constant(masked(weights[k], of)),
+                        Weights::Textured(formulas) => Weight::Textured(formulas[k].clone()),
+                    };
+                    let components =
+                        model.components.iter().enumerate().map(|(k, c)| (c.name.to_string(), weight(k)));
+                    plan.weights.push(BasisWeight {
+                        basis: model.name.into(),
+                        parameters: named(model, &places),
+                        components: components.collect(),
+                    });
+                }
                 // Every weight of every format is at most 1: they multiply reflectances.
                 let largest = match &lobe.weights {
                     Weights::Constant(weights) => weights.as_flattened().iter().copied().fold(0.0, f64::max),
@@ -283,7 +303,10 @@ impl Plan {
                 plan.rho_bound += if largest > 0.0 { largest * model.rho_bound } else { 0.0 };
             }
             let serves = |t: &&TablePlan| match t.is_basis() {
-                true => material.lobes.iter().any(|lobe| lobe.model == t.subject),
+                true => material.lobes.iter().filter(|lobe| lobe.model == t.subject).any(|lobe| {
+                    let made = settings_of(lobe, t.lobes[0].model);
+                    made.iter().any(|(parameters, _)| *parameters == t.lobes[0].parameters)
+                }),
                 false => t.subject == material.name,
             };
             plan.tables = self.tables.iter().filter(serves).map(|t| t.name.clone()).collect();
@@ -292,9 +315,11 @@ impl Plan {
         Ok(())
     }
 
-    fn require_basis(&mut self, model: &Model, roughness: Option<&Distribution>) {
-        let at = self.bases.iter().position(|basis| basis.model == model.name).unwrap_or_else(|| {
-            self.bases.push(Basis { model: model.name.into(), roughness: None });
+    fn require_basis(&mut self, model: &Model, places: &Parameters, roughness: Option<&Distribution>) {
+        let parameters = named(model, places);
+        let is_it = |basis: &Basis| basis.model == model.name && basis.parameters == parameters;
+        let at = self.bases.iter().position(is_it).unwrap_or_else(|| {
+            self.bases.push(Basis { model: model.name.into(), roughness: None, parameters });
             self.bases.len() - 1
         });
         if let Some(d) = roughness {
@@ -353,8 +378,9 @@ fn requested(request: &TableRequest, scene: &Scene, tolerance: f64) -> Result<Ta
     }
     let name = |subject: &str| request.name.clone().unwrap_or_else(|| format!("{subject}.{}", quantity.name));
     let table = match &request.subject {
-        SubjectRequest::Basis { model, roughness } => {
-            TablePlan::basis(name(model), quantity, models::find(model)?, *roughness, axes)?
+        SubjectRequest::Basis { model, roughness, parameters } => {
+            let basis = TablePlan::basis(name(model), quantity, models::find(model)?, *roughness, axes)?;
+            basis.with_parameters(parameters)?
         }
         SubjectRequest::Material(subject) => {
             TablePlan::material(name(subject), quantity, scene, subject, axes)?
@@ -419,25 +445,52 @@ fn material_table(
 
 /// The lobes of a material that is the same everywhere; else why it is not.
 pub(crate) fn constant_lobes(material: &Material) -> Result<Vec<Lobe>, String> {
-    let lobe = |lobe: &crate::scene::MaterialLobe| {
+    let split = |lobe: &MaterialLobe| {
         let Weights::Constant([a, b]) = &lobe.weights else {
             return Err("its weights are textured, so it has no single RGB table".to_string());
         };
         if lobe.roughness.as_ref().is_some_and(|d| !d.is_constant()) {
             return Err("its roughness varies, so it has no single RGB table".to_string());
         }
-        Ok(Lobe {
-            model: models::find(&lobe.model).map_err(|e| e.to_string())?,
-            roughness: lobe.roughness.as_ref().map(Distribution::min),
-            weights: (0..3).map(|c| [a[c], b[c]]).collect(),
-        })
+        let model = models::find(&lobe.model).map_err(|e| e.to_string())?;
+        let of = |(parameters, of)| {
+            let (a, b) = (masked(*a, of), masked(*b, of));
+            let roughness = lobe.roughness.as_ref().map(Distribution::min);
+            Lobe { parameters, ..Lobe::new(model, roughness, (0..3).map(|c| [a[c], b[c]]).collect()) }
+        };
+        Ok(settings_of(lobe, model).into_iter().map(of).collect::<Vec<_>>())
     };
-    material.lobes.iter().map(lobe).collect()
+    let lobes: Vec<_> = material.lobes.iter().map(split).collect::<Result<_, String>>()?;
+    Ok(lobes.into_iter().flatten().collect())
 }
 
-/// Whether a lobe of this roughness is the mirror's delta, as far as values go.
-fn is_mirror(roughness: Option<f64>) -> bool {
-    roughness.is_some_and(|r| r * r < ALPHA_MIN_VALUE)
+/// The different parameters that the channels of a lobe have, and which channels have them: a metal's η and k
+/// differ in R, G and B, and its lobe is then the sum of three, each of one channel.
+fn settings_of(lobe: &MaterialLobe, model: &Model) -> Vec<(Parameters, [bool; 3])> {
+    let mut settings: Vec<(Parameters, [bool; 3])> = Vec::new();
+    for channel in 0..3 {
+        let mut parameters = model.defaults();
+        for parameter in model.parameters() {
+            if let Some((_, given)) = lobe.parameters.iter().find(|(name, _)| name == parameter.name) {
+                parameters[parameter.place] = given[channel];
+            }
+        }
+        match settings.iter_mut().find(|(known, _)| *known == parameters) {
+            Some((_, of)) => of[channel] = true,
+            None => settings.push((parameters, std::array::from_fn(|k| k == channel))),
+        }
+    }
+    settings
+}
+
+/// The channels that are meant, and nothing of the others.
+fn masked(weights: [f64; 3], of: [bool; 3]) -> [f64; 3] {
+    std::array::from_fn(|k| if of[k] { weights[k] } else { 0.0 })
+}
+
+/// Parameters by their names.
+pub(super) fn named(model: &Model, places: &Parameters) -> BTreeMap<&'static str, f64> {
+    model.parameters().map(|parameter| (parameter.name, places[parameter.place])).collect()
 }
 
 impl fmt::Display for Plan {

@@ -5,12 +5,13 @@ use crate::axis::{Axis, Variable};
 use crate::bake::{Evaluator, Stages, Unobserved};
 use crate::check::Check;
 use crate::error::{Error, Result};
-use crate::models::{ALPHA_MIN_VALUE, Integral, Model, Violation};
+use crate::models::{Integral, Violation};
 use crate::plan::{INTEGRAL_F32, Lobe, TablePlan, VALUE_F32, constant_lobes};
 use crate::points::Points;
 use crate::quantity::RHO_DH;
 use crate::reference;
 use crate::scene::Material;
+use crate::setting::Parameters;
 use crate::table::Table;
 use std::f64::consts::FRAC_PI_2;
 
@@ -36,8 +37,6 @@ type LobesAt<'a> = Box<dyn Fn(&[f64]) -> Result<Vec<Lobe>> + 'a>;
 
 /// R, G and B, also where they are alike: the kernel of `gonio eval`, and so its bits.
 const CHANNELS: usize = 3;
-/// The perceptual roughness from which a lobe has values.
-const ROUGHNESS_MIN: f64 = 1e-3;
 
 impl<'a> Sum<'a> {
     /// A material over all that varies in it.
@@ -64,7 +63,8 @@ impl<'a> Sum<'a> {
     pub fn model(evaluator: &'a Evaluator, lobe: Lobe, parameters: Vec<Parameter>) -> Result<Self> {
         let model = lobe.model;
         let known = |name: &str| {
-            model.has_roughness && matches!(name, "roughness" | "alpha")
+            model.shape.is_some_and(|shape| name == "roughness" || name == shape.name)
+                || model.parameters().any(|parameter| parameter.name == name)
                 || model.components.iter().any(|component| component.weight == name)
         };
         if let Some(unknown) = parameters.iter().find(|parameter| !known(&parameter.name)) {
@@ -76,7 +76,12 @@ impl<'a> Sum<'a> {
             for (name, &value) in names.iter().zip(setting) {
                 match name.as_str() {
                     "roughness" => lobe.roughness = Some(value),
-                    "alpha" => lobe.roughness = Some(value.sqrt()),
+                    name if model.shape.is_some_and(|shape| shape.name == name) => {
+                        lobe.roughness = model.shape.map(|shape| shape.roughness(value));
+                    }
+                    name if model.parameters().any(|parameter| parameter.name == name) => {
+                        lobe.set(name, value)?;
+                    }
                     name => {
                         let k = model.components.iter().position(|c| c.weight == name).unwrap_or(0);
                         lobe.weights.iter_mut().for_each(|weights| weights[k] = value);
@@ -95,9 +100,9 @@ impl<'a> Sum<'a> {
         lobes: LobesAt<'a>,
         violation: Option<Violation>,
     ) -> Result<Self> {
-        let parameters = whole.iter().map(with_values).collect::<Result<Vec<_>>>()?;
-        let setting: Vec<_> = parameters.iter().map(|parameter| parameter.high).collect();
+        let setting: Vec<_> = whole.iter().map(|parameter| parameter.high).collect();
         let first = lobes(&setting)?;
+        let parameters = whole.iter().map(|p| with_values(p, &first)).collect::<Result<Vec<_>>>()?;
         let points = if has_values(&first) { Some(Points::new(evaluator, &first)?) } else { None };
         let declared = violation.map(|Violation { property, bound, source }| Declared {
             property,
@@ -112,7 +117,7 @@ impl<'a> Sum<'a> {
     fn reference_rho(&self, setting: &[f64], theta_i: f64) -> Option<f64> {
         let mut rho = [0.0; CHANNELS];
         for lobe in &(self.lobes)(setting).ok()? {
-            let [a, b] = lobe.model.reference?.rho_dh(theta_i.cos().max(0.0), alpha(lobe));
+            let [a, b] = lobe.model.reference?.rho_dh(theta_i.cos().max(0.0), &lobe.setting_at(None));
             for (rho, [weight_a, weight_b]) in rho.iter_mut().zip(&lobe.weights) {
                 *rho += weight_a * a + weight_b * b;
             }
@@ -121,11 +126,12 @@ impl<'a> Sum<'a> {
     }
 
     /// ρ_dh of one component model over all the roughnesses and angles that are asked for.
-    fn bake(&self, model: &'static Model, roughnesses: Vec<f64>, thetas: Vec<f64>) -> Result<Table> {
-        let rough = model.has_roughness.then(|| Axis::listed(Variable::Roughness, roughnesses));
+    fn bake(&self, lobe: &Lobe, roughnesses: Vec<f64>, thetas: Vec<f64>) -> Result<Table> {
+        let model = lobe.model;
+        let rough = model.shape.map(|_| Axis::listed(Variable::Roughness, roughnesses));
         let axes = rough.into_iter().chain([Axis::listed(Variable::ThetaI, thetas)]);
         let plan = TablePlan::basis(model.name, &RHO_DH, model, None, axes.collect::<Result<_>>()?)?;
-        let plan = plan.with_tolerance(INTEGRAL_F32);
+        let plan = plan.with_places(lobe.parameters).with_tolerance(INTEGRAL_F32);
         self.evaluator.bake(&plan, Check::Sample(0), &mut Stages::default(), &Unobserved)
     }
 }
@@ -180,7 +186,7 @@ impl Subject for Sum<'_> {
         };
         let mut f = vec![0.0; CHANNELS];
         for lobe in lobes {
-            let [a, b] = lobe.model.reference?.brdf(&at, alpha(lobe))?;
+            let [a, b] = lobe.model.reference?.brdf(&at, &lobe.setting_at(None))?;
             for (f, [weight_a, weight_b]) in f.iter_mut().zip(&lobe.weights) {
                 *f += weight_a * a + weight_b * b;
             }
@@ -200,10 +206,20 @@ impl Subject for Sum<'_> {
             let roughness = |lobe: &Lobe| lobe.roughness.unwrap_or(0.0);
             let roughnesses = sorted(lobes.iter().map(|lobe| roughness(lobe)));
             let columns = sorted(thetas.iter().copied());
-            let model = lobes[0].model;
-            let table = self.bake(model, roughnesses.clone(), columns.clone())?;
+            // A table for each setting of what it has no axis for.
+            let mut tables: Vec<(Parameters, Table)> = Vec::new();
             for (lobe, rho) in lobes.iter().zip(rho.chunks_exact_mut(thetas.len() * CHANNELS)) {
-                let row = if model.has_roughness { place(&roughnesses, roughness(lobe)) } else { 0 };
+                let made = tables.iter().position(|(parameters, _)| *parameters == lobe.parameters);
+                let made = match made {
+                    Some(made) => made,
+                    None => {
+                        let table = self.bake(lobe, roughnesses.clone(), columns.clone())?;
+                        tables.push((lobe.parameters, table));
+                        tables.len() - 1
+                    }
+                };
+                let table = &tables[made].1;
+                let row = lobe.model.shape.map_or(0, |_| place(&roughnesses, roughness(lobe)));
                 for (&theta, rho) in thetas.iter().zip(rho.chunks_exact_mut(CHANNELS)) {
                     let texel = table.texel(row * columns.len() + place(&columns, theta));
                     for (rho, weights) in rho.iter_mut().zip(&lobe.weights) {
@@ -266,24 +282,21 @@ impl Subject for Sum<'_> {
     }
 }
 
-fn alpha(lobe: &Lobe) -> f64 {
-    if lobe.model.has_roughness { lobe.roughness.map_or(0.0, |r| r * r) } else { 0.0 }
-}
-
 fn has_values(lobes: &[Lobe]) -> bool {
-    let delta =
-        |lobe: &Lobe| lobe.model.is_delta() || lobe.model.has_roughness && alpha(lobe) < ALPHA_MIN_VALUE;
-    !lobes.iter().any(delta)
+    !lobes.iter().any(|lobe| lobe.model.is_delta_at(lobe.roughness.unwrap_or(0.0)))
 }
 
 /// The part of a parameter's range that has values.
-fn with_values(parameter: &Parameter) -> Result<Parameter> {
+fn with_values(parameter: &Parameter, lobes: &[Lobe]) -> Result<Parameter> {
     let Parameter { name, low, high, .. } = parameter;
-    let least = match name.as_str() {
-        "alpha" => ALPHA_MIN_VALUE,
-        name if name.ends_with("roughness") => ROUGHNESS_MIN,
-        _ => return Ok(parameter.clone()),
+    let shapes = || lobes.iter().filter_map(|lobe| lobe.model.shape);
+    let least = match name.ends_with("roughness") {
+        true => shapes().map(|shape| shape.roughness(shape.least)).fold(0.0, f64::max),
+        false => shapes().filter(|shape| shape.name == name).map(|shape| shape.least).fold(0.0, f64::max),
     };
+    if least == 0.0 {
+        return Ok(parameter.clone());
+    }
     if *high < least { Ok(parameter.clone()) } else { Parameter::new(name, low.max(least), *high) }
 }
 

@@ -6,6 +6,7 @@ use super::masking::{Masking, smith_correlated::SmithCorrelated};
 use super::ndf::{Ndf, ggx::Ggx};
 use super::quadrature::{even_breaks, integrate};
 use super::{Angles, Factors, Reference, definition};
+use crate::setting::Setting;
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
@@ -22,27 +23,27 @@ pub(crate) struct Microfacet {
 
 impl Reference for Microfacet {
     /// Walter et al. 2007, eq. 20: f = F D G2 / (4 μi μe).
-    fn brdf(&self, angles: &Angles, alpha: f64) -> Option<[f64; 2]> {
+    fn brdf(&self, angles: &Angles, setting: &Setting) -> Option<[f64; 2]> {
         let pair = Pair::new(angles);
-        let Factors { d, g2, .. } = self.factors_of(&pair, alpha)?;
+        let Factors { d, g2, .. } = self.factors_of(&pair, setting)?;
         let s = d * g2 / (4.0 * pair.mu_i * pair.mu_e);
-        Some(self.fresnel.weights(pair.cos_d, pair.one_minus_cos_d).map(|weight| s * weight))
+        Some(self.fresnel.weights(pair.cos_d, pair.one_minus_cos_d, setting).map(|weight| s * weight))
     }
 
-    fn rho_dh(&self, mu: f64, alpha: f64) -> [f64; 2] {
-        self.rho_dh_within(TOLERANCE, mu, alpha)
+    fn rho_dh(&self, mu: f64, setting: &Setting) -> [f64; 2] {
+        self.rho_dh_within(TOLERANCE, mu, setting)
     }
 
     /// As the mean weighs ρ with 2μ, ρ may be the coarser the smaller μ is.
-    fn rho_hh(&self, alpha: f64) -> [f64; 2] {
-        if alpha == 0.0 {
-            return self.fresnel.mean();
+    fn rho_hh(&self, setting: &Setting) -> [f64; 2] {
+        if setting.alpha == 0.0 {
+            return self.fresnel.mean(setting);
         }
-        definition::rho_hh(|mu| self.rho_dh_within(TOLERANCE / mu, mu, alpha), alpha)
+        definition::rho_hh(|mu| self.rho_dh_within(TOLERANCE / mu, mu, setting), setting.alpha)
     }
 
-    fn factors(&self, angles: &Angles, alpha: f64) -> Option<Factors> {
-        self.factors_of(&Pair::new(angles), alpha)
+    fn factors(&self, angles: &Angles, setting: &Setting) -> Option<Factors> {
+        self.factors_of(&Pair::new(angles), setting)
     }
 }
 
@@ -58,30 +59,30 @@ const PANEL: f64 = 3.0;
 impl Microfacet {
     /// As dωi = 4 (ωe·ωm) dωm (Walter et al. 2007, eq. 14), ρ = ∫ F D G2 (ωe·ωm) / μe dωm over the normals
     /// that reflect ωe above the horizon.
-    fn rho_dh_within(&self, tolerance: f64, mu: f64, alpha: f64) -> [f64; 2] {
+    fn rho_dh_within(&self, tolerance: f64, mu: f64, setting: &Setting) -> [f64; 2] {
         let mu = mu.clamp(MIN_MU, 1.0);
-        if alpha == 0.0 {
-            return self.fresnel.weights(mu, 1.0 - mu);
+        if setting.alpha == 0.0 {
+            return self.fresnel.weights(mu, 1.0 - mu, setting);
         }
         // With ωe at azimuth 0, the horizon falls from tan θm ~ 2/μ to ~ μ/2 as φ passes π/2, on the scale μ:
         // φ = π/2 + μ sinh u. The other half of the normals, beyond φ = π, mirrors this one.
         let reach = (FRAC_PI_2 / mu).asinh();
         let slice = |u: f64| {
             let (sin, cos) = (mu * u.sinh()).sin_cos();
-            self.slice(FINER * tolerance, 2.0 * mu * u.cosh(), mu, cos, -sin, alpha)
+            self.slice(FINER * tolerance, 2.0 * mu * u.cosh(), mu, cos, -sin, setting)
         };
         integrate(slice, &even_breaks(-reach, reach, PANEL), tolerance).value_or_nan()
     }
 
-    fn factors_of(&self, pair: &Pair, alpha: f64) -> Option<Factors> {
-        if alpha == 0.0 {
+    fn factors_of(&self, pair: &Pair, setting: &Setting) -> Option<Factors> {
+        if setting.alpha == 0.0 {
             return None;
         }
-        let [lambda_i, lambda_e] = [pair.tan2_i, pair.tan2_e].map(|tan2| self.ndf.lambda(tan2, alpha));
+        let [lambda_i, lambda_e] = [pair.tan2_i, pair.tan2_e].map(|tan2| self.ndf.lambda(tan2, setting));
         Some(Factors {
-            d: self.ndf.d(pair.cos2_m, pair.tan2_m, alpha),
+            d: self.ndf.d(pair.cos2_m, pair.tan2_m, setting),
             g2: self.masking.g2(lambda_i, lambda_e),
-            fc: self.fresnel.weights(pair.cos_d, pair.one_minus_cos_d)[1],
+            fc: self.fresnel.weights(pair.cos_d, pair.one_minus_cos_d, setting)[1],
         })
     }
 
@@ -97,10 +98,11 @@ impl Microfacet {
         mu: f64,
         sin_phi: f64,
         cos_phi: f64,
-        alpha: f64,
+        setting: &Setting,
     ) -> [f64; 2] {
+        let alpha = setting.alpha;
         let wo = DVec3::new(sin_of(mu), 0.0, mu);
-        let lambda_o = self.ndf.lambda((wo.x / wo.z).powi(2), alpha);
+        let lambda_o = self.ndf.lambda((wo.x / wo.z).powi(2), setting);
 
         let integrand = |v: f64| {
             let sinh = v.sinh();
@@ -112,14 +114,14 @@ impl Microfacet {
             // ωi = 2 (ωe·ωm) ωm − ωe; at the horizon Λ(ωi) is infinite and G2 zero.
             let cos_d = wo.dot(wm);
             let mu_i = f64::clamp(2.0 * cos_d * wm.z - wo.z, 0.0, 1.0);
-            let lambda_i = self.ndf.lambda((sin_of(mu_i) / mu_i).powi(2), alpha);
+            let lambda_i = self.ndf.lambda((sin_of(mu_i) / mu_i).powi(2), setting);
             let g2 = self.masking.g2(lambda_i, lambda_o);
-            let d = self.ndf.d(cos_m * cos_m, tan_m * tan_m, alpha);
+            let d = self.ndf.d(cos_m * cos_m, tan_m * tan_m, setting);
 
             // dωm = sin θm dθm dφ, dθm = cos²θm α cosh v dv.
             let solid_angle = sin_m * cos_m * cos_m * alpha * (1.0 + sinh * sinh).sqrt();
             let value = d * g2 * cos_d / mu * solid_angle * weight;
-            self.fresnel.weights(cos_d, 1.0 - cos_d).map(|fresnel| value * fresnel)
+            self.fresnel.weights(cos_d, 1.0 - cos_d, setting).map(|fresnel| value * fresnel)
         };
         let horizon = (tan_horizon(mu, cos_phi) / alpha).asinh();
         integrate(integrand, &even_breaks(0.0, horizon, PANEL), tolerance).value_or_nan()
@@ -146,7 +148,7 @@ mod tests {
         let ggx = Microfacet { ndf: &Ggx, masking: &SmithCorrelated, fresnel: &Schlick };
         let centre = |k: usize| (k as f64 + 0.5) / 8.0;
         for (mu, roughness) in (0..64).map(|k| (centre(k % 8), centre(k / 8))) {
-            let at = |tolerance| ggx.rho_dh_within(tolerance, mu, roughness * roughness);
+            let at = |tolerance| ggx.rho_dh_within(tolerance, mu, &(roughness * roughness).into());
             let ([a, b], [c, d]) = (at(TOLERANCE), at(0.01 * TOLERANCE));
             let error = (a - c).abs().max((b - d).abs());
             assert!(error <= 1e-11, "μ = {mu}, roughness {roughness}: {error:e}");

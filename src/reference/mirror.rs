@@ -2,6 +2,7 @@
 
 use super::fresnel::{Fresnel, schlick::Schlick};
 use super::{Angles, Reference};
+use crate::setting::Setting;
 
 /// f = F δ(θi − θe) δ(δφ) / (cos θi sin θi) with Schlick's F: A = 1 − Fc and B = Fc under the delta.
 pub static MIRROR: &dyn Reference = &Mirror;
@@ -10,17 +11,17 @@ struct Mirror;
 
 impl Reference for Mirror {
     /// A delta has no value.
-    fn brdf(&self, _angles: &Angles, _alpha: f64) -> Option<[f64; 2]> {
+    fn brdf(&self, _angles: &Angles, _: &Setting) -> Option<[f64; 2]> {
         None
     }
 
     /// ωm = n: ρ_dh = F(μ).
-    fn rho_dh(&self, mu: f64, _alpha: f64) -> [f64; 2] {
+    fn rho_dh(&self, mu: f64, setting: &Setting) -> [f64; 2] {
         let mu = mu.clamp(0.0, 1.0);
-        Schlick.weights(mu, 1.0 - mu)
+        Schlick.weights(mu, 1.0 - mu, setting)
     }
 
-    fn rho_hh(&self, _alpha: f64) -> [f64; 2] {
-        Schlick.mean()
+    fn rho_hh(&self, setting: &Setting) -> [f64; 2] {
+        Schlick.mean(setting)
     }
 }

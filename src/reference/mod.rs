@@ -20,6 +20,8 @@ mod quadrature;
 #[cfg(test)]
 mod tests;
 
+use crate::setting::Setting;
+
 pub use diffuse::{gltf::GLTF_DIFFUSE, lambert::LAMBERT};
 pub use directions::{Angles, MIN_MU};
 pub(crate) use fresnel::{Fresnel, none::Constant, schlick::Schlick};
@@ -35,21 +37,21 @@ pub(crate) use ndf::{Ndf, ggx::Ggx};
 ///
 /// A model's BRDF is f = a·A + b·B, its integrals likewise; each function returns [A, B]. A is what F0
 /// weighs and B what F90 weighs; a model without Fresnel has B = 0. A model without roughness ignores
-/// `alpha`, whose domain is [0, 1]. An integral that did not converge is NaN.
+/// the setting's `alpha`; that of microfacets is in [0, 1]. An integral that did not converge is NaN.
 pub trait Reference: Sync {
     /// f in sr⁻¹, without the cosine; `None` where it is a delta and has no value.
-    fn brdf(&self, angles: &Angles, alpha: f64) -> Option<[f64; 2]>;
+    fn brdf(&self, angles: &Angles, setting: &Setting) -> Option<[f64; 2]>;
 
     /// ρ_dh = ∫ f cos θ dω over the hemisphere, at μ = cos θ ∈ [0, 1] of the fixed direction.
-    fn rho_dh(&self, mu: f64, alpha: f64) -> [f64; 2];
+    fn rho_dh(&self, mu: f64, setting: &Setting) -> [f64; 2];
 
     /// ρ_hh = 2 ∫ ρ_dh(μ) μ dμ over [0, 1].
-    fn rho_hh(&self, alpha: f64) -> [f64; 2] {
-        definition::rho_hh(|mu| self.rho_dh(mu, alpha), alpha)
+    fn rho_hh(&self, setting: &Setting) -> [f64; 2] {
+        definition::rho_hh(|mu| self.rho_dh(mu, setting), setting.alpha)
     }
 
     /// The factors of a microfacet model; `None` for any other, and where [`Reference::brdf`] is `None`.
-    fn factors(&self, _angles: &Angles, _alpha: f64) -> Option<Factors> {
+    fn factors(&self, _angles: &Angles, _: &Setting) -> Option<Factors> {
         None
     }
 }

@@ -36,7 +36,8 @@ fn defined(model: &dyn Reference, mu: f64, alpha: f64) -> [f64; 2] {
     let ring = |theta_e: f64| {
         let weight = 2.0 * theta_e.cos() * theta_e.sin();
         let value = |delta_phi| {
-            let f = model.brdf(&Angles { theta_i, theta_e, delta_phi }, alpha).unwrap_or([f64::NAN; 2]);
+            let f =
+                model.brdf(&Angles { theta_i, theta_e, delta_phi }, &alpha.into()).unwrap_or([f64::NAN; 2]);
             f.map(|f| weight * f)
         };
         integrate(value, &[0.0, 0.1, 1.0, PI], 1e-11).value_or_nan()
@@ -51,7 +52,7 @@ fn the_integral_over_normals_is_the_definition() {
     for (k, (model, alphas)) in models.into_iter().enumerate() {
         for &alpha in alphas {
             for mu in [0.02, 0.2, 0.6, 0.95] {
-                let error = difference(model.rho_dh(mu, alpha), defined(model, mu, alpha));
+                let error = difference(model.rho_dh(mu, &alpha.into()), defined(model, mu, alpha));
                 assert!(error < 1e-9, "model {k}: ρ(μ = {mu}, α = {alpha}) is off by {error:e}");
             }
         }
@@ -61,7 +62,7 @@ fn the_integral_over_normals_is_the_definition() {
 /// The check above can fail: ρ at an α that is wrong in the seventh digit does not pass.
 #[test]
 fn the_definition_tells_a_wrong_alpha() {
-    let error = difference(GGX.rho_dh(0.6, 0.3 * (1.0 + 1e-7)), defined(GGX, 0.6, 0.3));
+    let error = difference(GGX.rho_dh(0.6, &(0.3 * (1.0 + 1e-7)).into()), defined(GGX, 0.6, 0.3));
     assert!(error > 1e-9, "{error:e}");
     assert!(difference([f64::NAN, 0.0], [0.0; 2]).is_nan());
 }
@@ -69,9 +70,9 @@ fn the_definition_tells_a_wrong_alpha() {
 #[test]
 fn lambert_reflects_everything() {
     for mu in MUS {
-        assert!(difference(LAMBERT.rho_dh(mu, 0.5), [1.0, 0.0]) < 1e-14, "μ = {mu}");
+        assert!(difference(LAMBERT.rho_dh(mu, &0.5.into()), [1.0, 0.0]) < 1e-14, "μ = {mu}");
     }
-    assert!(difference(LAMBERT.rho_hh(0.5), [1.0, 0.0]) < 1e-14);
+    assert!(difference(LAMBERT.rho_hh(&0.5.into()), [1.0, 0.0]) < 1e-14);
 }
 
 /// A + B is Lambert's. At normal incidence ωi·ωm = c = cos(θe/2), so B = 8 ∫ (1 − c)⁵ (2c² − 1) c dc over
@@ -79,10 +80,10 @@ fn lambert_reflects_everything() {
 #[test]
 fn gltf_diffuse_is_a_split_lambert() {
     for mu in MUS {
-        let [a, b] = GLTF_DIFFUSE.rho_dh(mu, 0.5);
+        let [a, b] = GLTF_DIFFUSE.rho_dh(mu, &0.5.into());
         assert!((a + b - 1.0).abs() < 1e-12 && b > 0.0, "μ = {mu}: {a} + {b}");
     }
-    let b = GLTF_DIFFUSE.rho_dh(1.0, 0.5)[1];
+    let b = GLTF_DIFFUSE.rho_dh(1.0, &0.5.into())[1];
     assert!((b - GLTF_B_AT_NORMAL).abs() < 1e-14, "{b}");
 }
 const GLTF_B_AT_NORMAL: f64 = 0.000081888140563477;
@@ -91,7 +92,7 @@ const GLTF_B_AT_NORMAL: f64 = 0.000081888140563477;
 #[test]
 fn ggx_has_its_closed_form() {
     for model in [GGX, SEPARABLE] {
-        let [a, b] = model.rho_dh(1.0, 1.0);
+        let [a, b] = model.rho_dh(1.0, &1.0.into());
         assert!((a + b - (1.0 - LN_2)).abs() < 1e-11, "{a} + {b}");
     }
 }
@@ -101,15 +102,18 @@ fn ggx_has_its_closed_form() {
 fn without_fresnel_it_is_the_sum() {
     let angles = Angles { theta_i: 0.4, theta_e: 1.1, delta_phi: 0.3 };
     let sum = |f: Option<[f64; 2]>| f.map_or(f64::NAN, |[a, b]| a + b);
-    assert!((sum(CORRELATED.brdf(&angles, 0.2)) / sum(GGX.brdf(&angles, 0.2)) - 1.0).abs() < 1e-14);
+    assert!(
+        (sum(CORRELATED.brdf(&angles, &0.2.into())) / sum(GGX.brdf(&angles, &0.2.into())) - 1.0).abs()
+            < 1e-14
+    );
     for (mu, alpha) in [(0.1, 0.2), (0.7, 1.0), (0.3, 0.0)] {
-        let [a, b] = GGX.rho_dh(mu, alpha);
-        assert!(difference(CORRELATED.rho_dh(mu, alpha), [a + b, 0.0]) < 1e-10);
+        let [a, b] = GGX.rho_dh(mu, &alpha.into());
+        assert!(difference(CORRELATED.rho_dh(mu, &alpha.into()), [a + b, 0.0]) < 1e-10);
     }
-    assert_eq!(CORRELATED.rho_hh(0.0), [1.0, 0.0]);
+    assert_eq!(CORRELATED.rho_hh(&0.0.into()), [1.0, 0.0]);
     assert_eq!(
-        Microfacet { ndf: &Ggx, masking: &SmithSeparable, fresnel: &Schlick }.rho_hh(0.0),
-        MIRROR.rho_hh(0.0)
+        Microfacet { ndf: &Ggx, masking: &SmithSeparable, fresnel: &Schlick }.rho_hh(&0.0.into()),
+        MIRROR.rho_hh(&0.0.into())
     );
 }
 
@@ -117,7 +121,7 @@ fn without_fresnel_it_is_the_sum() {
 /// correlated, its limit as μ/α → 0 is not 1 but 0.9361.
 #[test]
 fn a_smooth_separable_ggx_has_its_limits() {
-    let rho = |ratio: f64, alpha: f64| SEPARABLE.rho_dh(ratio * alpha, alpha)[0];
+    let rho = |ratio: f64, alpha: f64| SEPARABLE.rho_dh(ratio * alpha, &alpha.into())[0];
     for ratio in [0.2, 0.96, 5.0] {
         let change = rho(ratio, 1e-4) - rho(ratio, 1e-6);
         assert!(change.abs() < 1e-6, "ratio {ratio}: {change:e}");
@@ -137,18 +141,18 @@ fn maskings_are_in_order() {
     for alpha in [0.1, 0.5, 1.0] {
         for mu in [0.05, 0.3, 0.8] {
             let [none, correlated, separable] =
-                [UNMASKED, CORRELATED, SEPARABLE].map(|model| model.rho_dh(mu, alpha)[0]);
+                [UNMASKED, CORRELATED, SEPARABLE].map(|model| model.rho_dh(mu, &alpha.into())[0]);
             assert!(none > correlated && correlated > separable, "{none}, {correlated}, {separable}");
         }
     }
-    let [near, nearer] = [1e-3, 1e-4].map(|mu| UNMASKED.rho_dh(mu, 0.5)[0]);
+    let [near, nearer] = [1e-3, 1e-4].map(|mu| UNMASKED.rho_dh(mu, &0.5.into())[0]);
     assert!(near > 1.0 && (nearer / near / 10.0 - 1.0).abs() < 0.05, "{near}, {nearer}");
 }
 
 /// As α → 0, ρ of GGX depends on μ/α alone: 1 at both ends, 0.8915 where it is least, near μ = 1.11 α.
 #[test]
 fn a_smooth_ggx_depends_on_the_ratio_alone() {
-    let rho = |ratio: f64, alpha: f64| GGX.rho_dh(ratio * alpha, alpha).iter().sum::<f64>();
+    let rho = |ratio: f64, alpha: f64| GGX.rho_dh(ratio * alpha, &alpha.into()).iter().sum::<f64>();
     for ratio in [0.2, 1.11, 5.0] {
         let change = rho(ratio, 1e-4) - rho(ratio, 1e-6);
         assert!(change.abs() < 1e-6, "ratio {ratio}: {change:e}");
@@ -164,7 +168,7 @@ fn a_smooth_ggx_depends_on_the_ratio_alone() {
 fn ggx_values_hold_to_twelve_digits() {
     for (alpha, [theta_i, theta_e, delta_phi], expected) in GGX_VALUES {
         let angles = Angles { theta_i, theta_e, delta_phi };
-        let error = GGX.brdf(&angles, alpha).map_or(f64::NAN, |value| relative(value, expected));
+        let error = GGX.brdf(&angles, &alpha.into()).map_or(f64::NAN, |value| relative(value, expected));
         assert!(error < 1e-12, "{angles:?}, α = {alpha}: off by {error:e}");
     }
 }
@@ -194,7 +198,7 @@ fn values_are_reciprocal() {
             for delta_phi in [0.0, 1e-6, 0.3, 1.5, PI] {
                 let there = Angles { theta_i, theta_e, delta_phi };
                 let back = Angles { theta_i: theta_e, theta_e: theta_i, delta_phi: -delta_phi };
-                let [f, g] = [there, back].map(|a| GGX.brdf(&a, alpha).unwrap_or([f64::NAN; 2]));
+                let [f, g] = [there, back].map(|a| GGX.brdf(&a, &alpha.into()).unwrap_or([f64::NAN; 2]));
                 let same = |k: usize| f[k] >= 0.0 && (f[k] - g[k]).abs() <= 1e-13 * f[k] + f64::MIN_POSITIVE;
                 assert!(same(0) && same(1), "{there:?}, α = {alpha}: {f:?}, {g:?}");
             }
@@ -206,7 +210,7 @@ fn values_are_reciprocal() {
 fn ggx_creates_no_energy() {
     for alpha in ALPHAS {
         for mu in MUS {
-            let [a, b] = GGX.rho_dh(mu, alpha);
+            let [a, b] = GGX.rho_dh(mu, &alpha.into());
             assert!(a >= 0.0 && b >= 0.0 && a + b <= 1.0 + 1e-9, "μ = {mu}, α = {alpha}: {a} + {b}");
         }
     }
@@ -216,31 +220,31 @@ fn ggx_creates_no_energy() {
 #[test]
 fn the_mean_is_the_mean() {
     for alpha in [1e-2, 0.3] {
-        let weighted = |mu: f64| GGX.rho_dh(mu, alpha).map(|rho| 2.0 * mu * rho);
+        let weighted = |mu: f64| GGX.rho_dh(mu, &alpha.into()).map(|rho| 2.0 * mu * rho);
         let plain = integrate(weighted, &[0.0, 0.02, 1.0], 1e-9).value_or_nan();
-        let error = difference(GGX.rho_hh(alpha), plain);
+        let error = difference(GGX.rho_hh(&alpha.into()), plain);
         assert!(error < 1e-9, "α = {alpha}: off by {error:e}");
     }
-    let mirror = definition::rho_hh(|mu| MIRROR.rho_dh(mu, 0.0), 0.0);
-    assert!(difference(MIRROR.rho_hh(0.0), mirror) < 1e-12, "{mirror:?}");
+    let mirror = definition::rho_hh(|mu| MIRROR.rho_dh(mu, &0.0.into()), 0.0);
+    assert!(difference(MIRROR.rho_hh(&0.0.into()), mirror) < 1e-12, "{mirror:?}");
 }
 
 #[test]
 fn zero_roughness_is_the_mirror() {
     let angles = Angles { theta_i: 0.5, theta_e: 0.5, delta_phi: 0.0 };
-    assert_eq!(GGX.brdf(&angles, 0.0), None);
-    assert_eq!(GGX.factors(&angles, 0.0), None);
-    assert_eq!(GGX.rho_dh(0.3, 0.0), MIRROR.rho_dh(0.3, 0.0));
-    assert_eq!(GGX.rho_hh(0.0), MIRROR.rho_hh(0.0));
-    assert!(difference(GGX.rho_dh(0.3, 1e-6), MIRROR.rho_dh(0.3, 0.0)) < 1e-9);
-    assert!(difference(GGX.rho_hh(1e-6), MIRROR.rho_hh(0.0)) < 1e-9);
+    assert_eq!(GGX.brdf(&angles, &0.0.into()), None);
+    assert_eq!(GGX.factors(&angles, &0.0.into()), None);
+    assert_eq!(GGX.rho_dh(0.3, &0.0.into()), MIRROR.rho_dh(0.3, &0.0.into()));
+    assert_eq!(GGX.rho_hh(&0.0.into()), MIRROR.rho_hh(&0.0.into()));
+    assert!(difference(GGX.rho_dh(0.3, &1e-6.into()), MIRROR.rho_dh(0.3, &0.0.into())) < 1e-9);
+    assert!(difference(GGX.rho_hh(&1e-6.into()), MIRROR.rho_hh(&0.0.into())) < 1e-9);
 }
 
 #[test]
 fn the_factors_make_the_value() {
     let angles = Angles { theta_i: 0.4, theta_e: 1.1, delta_phi: 0.3 };
-    let made = GGX.factors(&angles, 0.2).map(|f| f.d * f.g2 / (4.0 * 0.4_f64.cos() * 1.1_f64.cos()));
-    let value = GGX.brdf(&angles, 0.2).map(|f| f[0] + f[1]);
+    let made = GGX.factors(&angles, &0.2.into()).map(|f| f.d * f.g2 / (4.0 * 0.4_f64.cos() * 1.1_f64.cos()));
+    let value = GGX.brdf(&angles, &0.2.into()).map(|f| f[0] + f[1]);
     assert!(made.zip(value).is_some_and(|(a, b)| (a / b - 1.0).abs() < 1e-14), "{made:?}, {value:?}");
 }
 
@@ -248,10 +252,10 @@ fn the_factors_make_the_value() {
 #[test]
 fn bad_input_is_not_a_number() {
     for model in [GGX, GLTF_DIFFUSE] {
-        assert!(model.rho_dh(f64::NAN, 0.5)[0].is_nan());
+        assert!(model.rho_dh(f64::NAN, &0.5.into())[0].is_nan());
     }
-    assert!(GGX.rho_dh(0.5, f64::NAN)[0].is_nan());
-    assert!(GGX.rho_hh(f64::NAN)[0].is_nan());
-    assert_eq!(GGX.rho_dh(-1.0, 0.5), GGX.rho_dh(MIN_MU, 0.5));
-    assert_eq!(GGX.rho_dh(2.0, 0.5), GGX.rho_dh(1.0, 0.5));
+    assert!(GGX.rho_dh(0.5, &f64::NAN.into())[0].is_nan());
+    assert!(GGX.rho_hh(&f64::NAN.into())[0].is_nan());
+    assert_eq!(GGX.rho_dh(-1.0, &0.5.into()), GGX.rho_dh(MIN_MU, &0.5.into()));
+    assert_eq!(GGX.rho_dh(2.0, &0.5.into()), GGX.rho_dh(1.0, &0.5.into()));
 }

@@ -247,12 +247,14 @@ impl Source {
             None => lobes.push(MaterialLobe {
                 model: "gltf_diffuse".into(),
                 roughness: None,
+                parameters: Vec::new(),
                 weights: self.weights("gltf_diffuse", metallic, ["0.96 (1 − metallic) base_color", "0"]),
             }),
         }
         lobes.push(MaterialLobe {
             model: "ggx".into(),
             roughness: Some(roughness),
+            parameters: Vec::new(),
             weights: self.weights("ggx", metallic, ["0.04 (1 − metallic) + metallic base_color", "1"]),
         });
         // Texels and vertex colours are at most 1, and may be 0.

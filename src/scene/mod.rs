@@ -68,6 +68,8 @@ pub struct MaterialLobe {
     pub model: String,
     /// Perceptual roughness (α = roughness²); `None` for a model without roughness.
     pub roughness: Option<Distribution>,
+    /// What the scene gives of the model's other parameters, by name, for R, G and B; the rest has defaults.
+    pub parameters: Vec<(String, [f64; 3])>,
     /// The weights of the model's components.
     pub weights: Weights,
 }
@@ -115,6 +117,8 @@ pub enum SubjectRequest {
         model: String,
         /// Perceptual roughness, where the table has no roughness axis.
         roughness: Option<f64>,
+        /// What the recipe gives of its other parameters.
+        parameters: Vec<(String, f64)>,
     },
 }
 

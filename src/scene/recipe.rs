@@ -5,12 +5,12 @@ mod document;
 use super::{Distribution, Material, MaterialLobe, Scene, SubjectRequest, TableRequest, Weights};
 use crate::axis::{Axis, MAX_COUNT, Mapping, Positions, Variable};
 use crate::error::{Error, Result};
-use crate::models::{self, Component, FRESNELS, MASKINGS, MODELS, Model};
+use crate::models::{self, Component, FRESNELS, MASKINGS, MODELS, Model, Shape};
 use crate::plan::{MAX_GAUSS, MAX_GRID, MAX_SAMPLES, Rule};
 use crate::quantity::{Evaluation, QUANTITIES};
 use crate::storage::Storage;
 use document::{Document, Fields, Item};
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 use std::path::Path;
 
 /// Tables are not better than f32, and a tolerance above 1 promises nothing.
@@ -69,42 +69,59 @@ fn lobe(item: Item) -> Result<MaterialLobe> {
     let model = model(&fields, fields.require("model")?)?;
     let mut keys = vec!["model"];
     keys.extend(if model.microfacet.is_some() { &["masking", "fresnel"][..] } else { &[] });
-    keys.extend(if model.has_roughness { &["roughness", "alpha"][..] } else { &[] });
+    keys.extend(model.shape.iter().flat_map(|shape| ["roughness", shape.name]));
+    keys.extend(model.parameters().map(|parameter| parameter.name));
     keys.extend(model.components.iter().map(|component| component.weight));
     let fields = item.table(&keys)?;
 
-    let roughness = match (model.has_roughness, roughness(&fields)?) {
-        (true, None) => return Err(fields.refuse("give its roughness or its alpha")),
-        (_, roughness) => roughness,
+    let roughness = match model.shape {
+        None => None,
+        Some(shape) => match roughness(&fields, &shape)? {
+            None if shape.name == "roughness" => return Err(fields.refuse("give its roughness")),
+            None => return Err(fields.refuse(&format!("give its roughness or its {}", shape.name))),
+            roughness => roughness,
+        },
     };
+    let mut parameters = Vec::new();
+    for parameter in model.parameters() {
+        match fields.get(parameter.name) {
+            Some(item) => parameters.push((parameter.name.into(), channels(item, parameter.range)?)),
+            None if parameter.default.is_none() => {
+                return Err(fields.refuse(&format!("give its {}", parameter.name)));
+            }
+            None => {}
+        }
+    }
     let mut weights = [[0.0; 3]; 2];
     for (weight, &Component { weight: key, default, .. }) in weights.iter_mut().zip(model.components) {
         *weight = match (fields.get(key), default) {
-            (Some(item), _) => color(item)?,
+            (Some(item), _) => channels(item, [0.0, 1.0])?,
             (None, Some(value)) => [value; 3],
             (None, None) => return Err(fields.refuse(&format!("give its {key}"))),
         };
     }
-    Ok(MaterialLobe { model: model.name.into(), roughness, weights: Weights::Constant(weights) })
+    Ok(MaterialLobe { model: model.name.into(), roughness, parameters, weights: Weights::Constant(weights) })
 }
 
-/// A colour in [0, 1]: one number, or three.
-fn color(item: Item) -> Result<[f64; 3]> {
+/// One number for all channels, or three.
+fn channels(item: Item, range: [f64; 2]) -> Result<[f64; 3]> {
     if !item.is_array() {
-        return Ok([item.number_in([0.0, 1.0])?; 3]);
+        return Ok([item.number_in(range)?; 3]);
     }
     let items = item.items()?;
     let [r, g, b] = items[..] else {
         return Err(item.refuse(&format!("{} numbers; give one, or three for R, G, B", items.len())));
     };
-    Ok([r.number_in([0.0, 1.0])?, g.number_in([0.0, 1.0])?, b.number_in([0.0, 1.0])?])
+    Ok([r.number_in(range)?, g.number_in(range)?, b.number_in(range)?])
 }
 
-/// `roughness = r`, or `alpha = r²` in its place; `roughness = [a, b]` is a material that varies.
-fn roughness(fields: &Fields) -> Result<Option<Distribution>> {
-    match (fields.get("roughness"), fields.get("alpha")) {
-        (Some(_), Some(alpha)) => {
-            Err(alpha.refuse("roughness is given too (alpha = roughness²); keep one of them"))
+/// `roughness = r`, or the model's own measure of it in its place, as `alpha = r²`; `roughness = [a, b]` is a
+/// material that varies.
+fn roughness(fields: &Fields, shape: &Shape) -> Result<Option<Distribution>> {
+    let measure = fields.get(shape.name).filter(|_| shape.name != "roughness");
+    match (fields.get("roughness"), measure) {
+        (Some(_), Some(measure)) => {
+            Err(measure.refuse(&format!("roughness is given too ({}); keep one of them", shape.summary)))
         }
         (Some(item), None) if item.is_array() => {
             let [a, b] = pair(item)?;
@@ -115,7 +132,10 @@ fn roughness(fields: &Fields) -> Result<Option<Distribution>> {
             Ok(Some(Distribution::uniform(min, max)))
         }
         (Some(item), None) => Ok(Some(Distribution::constant(item.number_in([0.0, 1.0])?))),
-        (None, Some(item)) => Ok(Some(Distribution::constant(item.number_in([0.0, 1.0])?.sqrt()))),
+        (None, Some(item)) => {
+            let measure = item.number_in([0.0, shape.most])?;
+            Ok(Some(Distribution::constant(shape.roughness(measure))))
+        }
         (None, None) => Ok(None),
     }
 }
@@ -127,25 +147,20 @@ fn pair(item: Item) -> Result<[Item; 2]> {
 
 /// `[[tables]]`
 fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
-    let fields = item.table(&[
-        "name",
-        "quantity",
-        "material",
-        "model",
-        "masking",
-        "fresnel",
-        "roughness",
-        "alpha",
-        "axes",
-        "grid",
-        "rule",
-        "storage",
-        "tolerance",
-    ])?;
+    let mut keys = vec!["name", "quantity", "material", "model", "masking", "fresnel", "roughness"];
+    keys.extend(["axes", "grid", "rule", "storage", "tolerance"]);
+    // A model's own, of which a table of a material or of another model says that it has none.
+    let own = models::all().flat_map(|model| {
+        let shape = model.shape.map(|shape| shape.name);
+        shape.into_iter().chain(model.parameters().map(|parameter| parameter.name))
+    });
+    let own: BTreeSet<_> = own.collect();
+    keys.extend(own.iter().filter(|&&name| name != "roughness"));
+    let fields = item.table(&keys)?;
     let name = fields.get("name").map(table_name).transpose()?;
     let quantity = fields.require("quantity")?;
     let quantity = quantity.one_of(QUANTITIES.iter().map(|q| (q.name, q)))?;
-    let (subject, varies) = subject(&fields, materials)?;
+    let (subject, varies) = subject(&fields, materials, &own)?;
 
     let (mut axes, mut auto) = (Vec::new(), Vec::new());
     if let Some(item) = fields.get("axes") {
@@ -185,7 +200,11 @@ fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
 }
 
 /// What the table is of, and whether it can have a roughness axis; if not, why.
-fn subject(fields: &Fields, materials: &[Material]) -> Result<(SubjectRequest, Result<(), &'static str>)> {
+fn subject(
+    fields: &Fields,
+    materials: &[Material],
+    own: &BTreeSet<&str>,
+) -> Result<(SubjectRequest, Result<(), &'static str>)> {
     const FIXED: &str = "the table has one roughness already; leave that or this axis away";
     const NONE: &str = "the table's model has no roughness; leave this axis away";
     let has = |material: &Material, test: fn(&Distribution) -> bool| {
@@ -194,7 +213,7 @@ fn subject(fields: &Fields, materials: &[Material]) -> Result<(SubjectRequest, R
     match (fields.get("material"), fields.get("model")) {
         (Some(item), None) => {
             let material = item.one_of(materials.iter().map(|m| (m.name.as_str(), m)))?;
-            for key in ["masking", "fresnel", "roughness", "alpha"] {
+            for key in ["masking", "fresnel", "roughness"].iter().chain(own) {
                 if let Some(item) = fields.get(key) {
                     return Err(item.refuse("a material has its own; leave this away, or give a model"));
                 }
@@ -208,11 +227,21 @@ fn subject(fields: &Fields, materials: &[Material]) -> Result<(SubjectRequest, R
         }
         (None, Some(item)) => {
             let model = model(fields, item)?;
-            let given = fields.get("roughness").or(fields.get("alpha"));
-            if let (false, Some(item)) = (model.has_roughness, given) {
-                return Err(item.refuse(&format!("{} has no roughness; leave this away", model.name)));
+            for key in ["roughness"].iter().chain(own) {
+                let shape = model.shape.is_some_and(|shape| *key == "roughness" || shape.name == *key);
+                let has = shape || model.parameters().any(|parameter| parameter.name == *key);
+                if let (false, Some(item)) = (has, fields.get(key)) {
+                    return Err(item.refuse(&format!("{} has no {key}; leave this away", model.name)));
+                }
             }
-            let roughness = match (roughness(fields)?, given) {
+            let given = fields.get("roughness").or(model.shape.and_then(|shape| fields.get(shape.name)));
+            let parameters = model.parameters().filter_map(|parameter| {
+                let item = fields.get(parameter.name)?;
+                Some(item.number_in(parameter.range).map(|value| (parameter.name.into(), value)))
+            });
+            let parameters = parameters.collect::<Result<_>>()?;
+            let roughness = model.shape.map_or(Ok(None), |shape| roughness(fields, &shape))?;
+            let roughness = match (roughness, given) {
                 (Some(range), Some(item)) if !range.is_constant() => {
                     return Err(
                         item.refuse("a table has one roughness; for a range give it a roughness axis")
@@ -220,12 +249,12 @@ fn subject(fields: &Fields, materials: &[Material]) -> Result<(SubjectRequest, R
                 }
                 (roughness, _) => roughness.map(|r| r.min()),
             };
-            let varies = match (model.has_roughness, roughness) {
+            let varies = match (model.shape.is_some(), roughness) {
                 (false, _) => Err(NONE),
                 (true, Some(_)) => Err(FIXED),
                 (true, None) => Ok(()),
             };
-            Ok((SubjectRequest::Basis { model: model.name.into(), roughness }, varies))
+            Ok((SubjectRequest::Basis { model: model.name.into(), roughness, parameters }, varies))
         }
         (Some(_), Some(item)) => Err(item.refuse("a table is of a material or of a model; keep one of them")),
         (None, None) => Err(fields.refuse("say of what: material = \"NAME\" or model = \"NAME\"")),

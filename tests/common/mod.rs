@@ -54,7 +54,7 @@ pub fn basis(
     roughness: &[f64],
     axes: Vec<Axis>,
 ) -> TablePlan {
-    let swept = model.has_roughness.then(|| listed(Variable::Roughness, roughness));
+    let swept = model.shape.map(|_| listed(Variable::Roughness, roughness));
     let axes = swept.into_iter().chain(axes).collect();
     let plan = TablePlan::basis("test", quantity, model, None, axes).unwrap();
     let exact = [INTEGRAL_F32, VALUE_F32]

@@ -49,8 +49,11 @@ pub fn model<'a>(args: &Args, name: &str, evaluator: &'a Evaluator) -> Result<Ta
             || ranges.iter().any(|range: &Parameter| range.name == key)
     };
     let mut whole = Vec::new();
-    if model.has_roughness && !given("alpha") && !given("roughness") {
-        whole.push(Parameter::new("alpha", models::ALPHA_MIN_VALUE, 1.0)?);
+    if let Some(shape) = model.shape.filter(|shape| !given(shape.name) && !given("roughness")) {
+        whole.push(Parameter::new(shape.name, shape.least, shape.most)?);
+    }
+    for parameter in model.parameters().filter(|parameter| !given(parameter.name)) {
+        whole.push(Parameter::new(parameter.name, parameter.range[0], parameter.range[1])?);
     }
     for component in model.components.iter().filter(|component| !given(component.weight)) {
         whole.push(Parameter::new(component.weight, 0.0, 1.0)?);
@@ -117,14 +120,17 @@ pub fn scene<'a>(
 
 fn basis<'a>(model: &'static Model, roughness: [f64; 2], evaluator: &'a Evaluator) -> Result<Target<'a>> {
     let mut parameters = Vec::new();
-    if model.has_roughness {
+    if model.shape.is_some() {
         let [low, high] = roughness;
         parameters.push(Parameter::new("roughness", low, high)?);
+    }
+    for parameter in model.parameters() {
+        parameters.push(Parameter::new(parameter.name, parameter.range[0], parameter.range[1])?);
     }
     for component in model.components {
         parameters.push(Parameter::new(component.weight, 0.0, 1.0)?);
     }
-    let lobe = Lobe { model, roughness: model.has_roughness.then_some(1.0), weights: vec![[0.0; 2]; 3] };
+    let lobe = Lobe::new(model, model.shape.map(|_| 1.0), vec![[0.0; 2]; 3]);
     let subject = Sum::model(evaluator, lobe, parameters)?;
     Ok(Target { subject, command: format!("gonio eval --model {}", model.name) })
 }
@@ -135,7 +141,7 @@ fn used(scene: &Scene, model: &Model) -> Option<[f64; 2]> {
     let range = |d: &Distribution| [d.min(), d.max()];
     let of_lobes = lobes.map(|lobe| lobe.roughness.as_ref().map_or([1.0; 2], range));
     let of_tables = scene.tables.iter().filter_map(|table| match &table.subject {
-        SubjectRequest::Basis { model: name, roughness } if name == model.name => {
+        SubjectRequest::Basis { model: name, roughness, .. } if name == model.name => {
             let axis = table.axes.iter().find(|axis| axis.variable == Variable::Roughness);
             Some(roughness.map(|r| [r; 2]).or(axis.map(|axis| axis.range)).unwrap_or([0.0, 1.0]))
         }

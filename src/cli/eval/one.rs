@@ -81,8 +81,10 @@ fn relative_difference(value: &[f32], reference: &[f64]) -> f64 {
 fn factors(lobe: &Lobe, angles: &Angles) -> Option<Factors> {
     let Angles { theta_i, theta_e, .. } = *angles;
     let delta_phi = angles.delta_phi();
-    let alpha = lobe.roughness.map_or(0.0, |r| r * r);
-    let factors = lobe.model.reference?.factors(&reference::Angles { theta_i, theta_e, delta_phi }, alpha)?;
+    let factors = lobe
+        .model
+        .reference?
+        .factors(&reference::Angles { theta_i, theta_e, delta_phi }, &lobe.setting_at(None))?;
     let f = |&[f0, f90]: &[f64; 2]| f0 * (1.0 - factors.fc) + f90 * factors.fc;
     let f = lobe.weights.iter().map(f).collect();
     Some(Factors { model: lobe.model.name, d: factors.d, g2: factors.g2, f })

@@ -3,15 +3,20 @@
 pub(crate) mod none;
 pub(crate) mod schlick;
 
-use super::{Component, Term};
+use super::{Component, Parameter, Term};
 use crate::reference;
+use crate::setting::{Parameters, Setting};
 
 /// F, split by what a material weighs.
 pub(crate) trait Fresnel {
     const TERM: Term;
     const REFERENCE: &'static dyn reference::Fresnel;
     const COMPONENTS: &'static [Component];
+    const PARAMETERS: &'static [Parameter] = &[];
+
+    /// Adds what its shader takes beside the parameters, or in place of them.
+    fn derive(_parameters: &mut Parameters) {}
 
     /// The components for c = ωi·ωm and x = 1 − c.
-    fn fresnel(c: f64, x: f64) -> [f64; 2];
+    fn fresnel(c: f64, x: f64, s: &Setting) -> [f64; 2];
 }

@@ -3,6 +3,7 @@
 use super::Fresnel;
 use crate::models::{Component, Term, part};
 use crate::reference;
+use crate::setting::Setting;
 
 pub(crate) struct Constant;
 
@@ -17,7 +18,7 @@ impl Fresnel for Constant {
     // The name that this reflectance has in every other Fresnel term.
     const COMPONENTS: &'static [Component] = &[Component { name: "A", weight: "f0", default: Some(1.0) }];
 
-    fn fresnel(_c: f64, _x: f64) -> [f64; 2] {
+    fn fresnel(_c: f64, _x: f64, _s: &Setting) -> [f64; 2] {
         [1.0, 0.0]
     }
 }

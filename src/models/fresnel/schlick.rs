@@ -3,6 +3,7 @@
 use super::Fresnel;
 use crate::models::{Component, Part, Term, part};
 use crate::reference;
+use crate::setting::Setting;
 
 pub(crate) const PART: Part = part!("fresnel/schlick");
 
@@ -18,7 +19,7 @@ impl Fresnel for Schlick {
     const REFERENCE: &'static dyn reference::Fresnel = &reference::Schlick;
     const COMPONENTS: &'static [Component] = &Component::schlick(0.04);
 
-    fn fresnel(c: f64, x: f64) -> [f64; 2] {
+    fn fresnel(c: f64, x: f64, _s: &Setting) -> [f64; 2] {
         fresnel(c, x)
     }
 }

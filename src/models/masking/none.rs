@@ -4,6 +4,7 @@ use super::Masking;
 use crate::models::ndf::Ndf;
 use crate::models::{Term, part};
 use crate::reference;
+use crate::setting::Setting;
 
 pub(crate) struct Unmasked;
 
@@ -18,11 +19,11 @@ impl Masking for Unmasked {
     const UNBOUNDED: Option<&'static str> =
         Some("without masking ρ grows as α/μ at grazing, beyond any bound, and no tolerance holds there");
 
-    fn visibility<N: Ndf>(mu_i: f64, mu_e: f64, _alpha: f64) -> f64 {
+    fn visibility<N: Ndf>(mu_i: f64, mu_e: f64, _s: &Setting) -> f64 {
         0.25 / (mu_i * mu_e)
     }
 
-    fn masking<N: Ndf>(x: f64, _y: f64, mu_e: f64, _alpha: f64) -> f64 {
+    fn masking<N: Ndf>(x: f64, _y: f64, mu_e: f64, _s: &Setting) -> f64 {
         2.0 * mu_e * x
     }
 }

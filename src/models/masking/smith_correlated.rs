@@ -5,6 +5,7 @@ use super::Masking;
 use crate::models::ndf::Ndf;
 use crate::models::{Term, part};
 use crate::reference;
+use crate::setting::Setting;
 
 pub(crate) struct SmithCorrelated;
 
@@ -17,11 +18,11 @@ impl Masking for SmithCorrelated {
     };
     const REFERENCE: &'static dyn reference::Masking = &reference::SmithCorrelated;
 
-    fn visibility<N: Ndf>(mu_i: f64, mu_e: f64, alpha: f64) -> f64 {
-        0.5 / (mu_i * N::smith_root(mu_e, alpha) + mu_e * N::smith_root(mu_i, alpha))
+    fn visibility<N: Ndf>(mu_i: f64, mu_e: f64, s: &Setting) -> f64 {
+        0.5 / (mu_i * N::smith_root(mu_e, s) + mu_e * N::smith_root(mu_i, s))
     }
 
-    fn masking<N: Ndf>(x: f64, y: f64, mu_e: f64, alpha: f64) -> f64 {
-        x * N::smith_root(mu_e, alpha) + N::smith_root_at(x, y, mu_e, alpha)
+    fn masking<N: Ndf>(x: f64, y: f64, mu_e: f64, s: &Setting) -> f64 {
+        x * N::smith_root(mu_e, s) + N::smith_root_at(x, y, mu_e, s)
     }
 }

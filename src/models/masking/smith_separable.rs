@@ -5,6 +5,7 @@ use super::Masking;
 use crate::models::ndf::Ndf;
 use crate::models::{SlopeCounts, Term, part};
 use crate::reference;
+use crate::setting::Setting;
 
 pub(crate) struct SmithSeparable;
 
@@ -26,12 +27,12 @@ impl Masking for SmithSeparable {
         }
     }
 
-    fn visibility<N: Ndf>(mu_i: f64, mu_e: f64, alpha: f64) -> f64 {
-        1.0 / ((mu_i + N::smith_root(mu_i, alpha)) * (mu_e + N::smith_root(mu_e, alpha)))
+    fn visibility<N: Ndf>(mu_i: f64, mu_e: f64, s: &Setting) -> f64 {
+        1.0 / ((mu_i + N::smith_root(mu_i, s)) * (mu_e + N::smith_root(mu_e, s)))
     }
 
-    fn masking<N: Ndf>(x: f64, y: f64, mu_e: f64, alpha: f64) -> f64 {
-        let inverse_g1 = 0.5 + 0.5 * N::smith_root(mu_e, alpha) / mu_e;
-        inverse_g1 * (x * mu_e + N::smith_root_at(x, y, mu_e, alpha))
+    fn masking<N: Ndf>(x: f64, y: f64, mu_e: f64, s: &Setting) -> f64 {
+        let inverse_g1 = 0.5 + 0.5 * N::smith_root(mu_e, s) / mu_e;
+        inverse_g1 * (x * mu_e + N::smith_root_at(x, y, mu_e, s))
     }
 }

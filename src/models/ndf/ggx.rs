@@ -6,6 +6,7 @@ use crate::models::masking::Masking;
 use crate::models::{Part, SlopeCounts, Term, part};
 use crate::pair::Half;
 use crate::reference;
+use crate::setting::Setting;
 use std::f64::consts::FRAC_1_PI;
 
 pub(crate) struct Ggx;
@@ -22,46 +23,46 @@ impl Ndf for Ggx {
     const FINE: Part = ggx_fine::PART;
     const SAMPLES: Part = ggx_samples::PART;
 
-    fn ndf(h: &Half, hz2: f64, alpha: f64) -> f64 {
+    fn ndf(h: &Half, hz2: f64, &Setting { alpha, .. }: &Setting) -> f64 {
         let q = alpha * h.h2 / (alpha * alpha * hz2 + h.ht2);
         q * q * FRAC_1_PI
     }
 
-    fn smith_root(mu: f64, alpha: f64) -> f64 {
+    fn smith_root(mu: f64, &Setting { alpha, .. }: &Setting) -> f64 {
         (alpha * alpha + (1.0 - alpha * alpha) * mu * mu).sqrt()
     }
 
-    fn smith_root_at(x: f64, y: f64, mu_e: f64, alpha: f64) -> f64 {
+    fn smith_root_at(x: f64, y: f64, mu_e: f64, &Setting { alpha, .. }: &Setting) -> f64 {
         let (a2, b2) = (alpha * alpha, (1.0 - alpha * alpha) * mu_e * mu_e);
         (a2 * y * y + b2 * x * x).sqrt()
     }
 
-    fn coarse_end(t_max: f64, alpha: f64) -> f64 {
+    fn coarse_end(t_max: f64, &Setting { alpha, .. }: &Setting) -> f64 {
         ggx_coarse::map_end(t_max, alpha)
     }
 
-    fn coarse_map(r: f64, alpha: f64) -> Map {
+    fn coarse_map(r: f64, &Setting { alpha, .. }: &Setting) -> Map {
         ggx_coarse::map(r, alpha)
     }
 
-    fn fine_end(t_max: f64, alpha: f64) -> f64 {
+    fn fine_end(t_max: f64, &Setting { alpha, .. }: &Setting) -> f64 {
         ggx_fine::map_end(t_max, alpha)
     }
 
-    fn fine_map(r: f64, alpha: f64) -> Map {
+    fn fine_map(r: f64, &Setting { alpha, .. }: &Setting) -> Map {
         ggx_fine::map(r, alpha)
     }
 
-    fn counts(mu: f64, alpha: f64, tolerance: f64) -> [SlopeCounts; 2] {
+    fn counts(mu: f64, &Setting { alpha, .. }: &Setting, tolerance: f64) -> [SlopeCounts; 2] {
         ggx_nodes::counts(mu, alpha, tolerance)
     }
 
-    fn by_ndf<M: Masking, F: Fresnel>(draw: [f64; 2], mu_e: f64, alpha: f64) -> [f64; 2] {
-        ggx_samples::by_ndf::<M, F>(draw, mu_e, alpha)
+    fn by_ndf<M: Masking, F: Fresnel>(draw: [f64; 2], mu_e: f64, s: &Setting) -> [f64; 2] {
+        ggx_samples::by_ndf::<M, F>(draw, mu_e, s)
     }
 
-    fn by_vndf<M: Masking, F: Fresnel>(draw: [f64; 2], mu_e: f64, alpha: f64) -> [f64; 2] {
-        ggx_samples::by_vndf::<M, F>(draw, mu_e, alpha)
+    fn by_vndf<M: Masking, F: Fresnel>(draw: [f64; 2], mu_e: f64, s: &Setting) -> [f64; 2] {
+        ggx_samples::by_vndf::<M, F>(draw, mu_e, s)
     }
 }
 

@@ -64,9 +64,9 @@ mod tests {
         let map = slopes().map(tolerance);
         let mut sum = [0.0; 2];
         for [c, t_max, inverse, weight] in side(mu, sign, &gauss_legendre(azimuths), tolerance) {
-            let end = (map.end)(t_max, alpha);
+            let end = (map.end)(t_max, &alpha.into());
             for node in nodes {
-                let [a, b] = (map.integrand)(end * node.x, [c, t_max, inverse], mu, alpha);
+                let [a, b] = (map.integrand)(end * node.x, [c, t_max, inverse], mu, &alpha.into());
                 let weight = weight * end * node.weight;
                 sum = [sum[0] + weight * a, sum[1] + weight * b];
             }

@@ -8,40 +8,45 @@ pub(crate) mod ggx_samples;
 
 use super::fresnel::Fresnel;
 use super::masking::Masking;
-use super::{Part, SlopeCounts, Term};
+use super::{Parameter, Part, SlopeCounts, Term};
 use crate::pair::Half;
 use crate::reference;
+use crate::setting::{Parameters, Setting};
 
 /// A distribution of normals, with the maps that integrate and sample it.
 pub(crate) trait Ndf {
     const TERM: Term;
     const REFERENCE: &'static dyn reference::Ndf;
+    const PARAMETERS: &'static [Parameter] = &[];
+
+    /// Adds what its shader takes beside the parameters, or in place of them.
+    fn derive(_parameters: &mut Parameters) {}
     /// The shaders of its maps, and of its samplers.
     const COARSE: Part;
     const FINE: Part;
     const SAMPLES: Part;
 
     /// D(ωm), sr⁻¹.
-    fn ndf(h: &Half, hz2: f64, alpha: f64) -> f64;
+    fn ndf(h: &Half, hz2: f64, s: &Setting) -> f64;
 
     /// (1 + 2Λ) μ, with Smith's Λ.
-    fn smith_root(mu: f64, alpha: f64) -> f64;
+    fn smith_root(mu: f64, s: &Setting) -> f64;
 
     /// y (1 + 2Λ) μi at μi = μe x/y.
-    fn smith_root_at(x: f64, y: f64, mu_e: f64, alpha: f64) -> f64;
+    fn smith_root_at(x: f64, y: f64, mu_e: f64, s: &Setting) -> f64;
 
     /// r at which tan θm reaches `t_max`, and the map there.
-    fn coarse_end(t_max: f64, alpha: f64) -> f64;
-    fn coarse_map(r: f64, alpha: f64) -> Map;
-    fn fine_end(t_max: f64, alpha: f64) -> f64;
-    fn fine_map(r: f64, alpha: f64) -> Map;
+    fn coarse_end(t_max: f64, s: &Setting) -> f64;
+    fn coarse_map(r: f64, s: &Setting) -> Map;
+    fn fine_end(t_max: f64, s: &Setting) -> f64;
+    fn fine_map(r: f64, s: &Setting) -> Map;
 
     /// What a texel takes to meet a tolerance, where cos φ > 0 and where it is < 0.
-    fn counts(mu: f64, alpha: f64, tolerance: f64) -> [SlopeCounts; 2];
+    fn counts(mu: f64, s: &Setting, tolerance: f64) -> [SlopeCounts; 2];
 
     /// f μi / p for a draw of D cos θm, and for one of the normals that ωe sees.
-    fn by_ndf<M: Masking, F: Fresnel>(draw: [f64; 2], mu_e: f64, alpha: f64) -> [f64; 2];
-    fn by_vndf<M: Masking, F: Fresnel>(draw: [f64; 2], mu_e: f64, alpha: f64) -> [f64; 2];
+    fn by_ndf<M: Masking, F: Fresnel>(draw: [f64; 2], mu_e: f64, s: &Setting) -> [f64; 2];
+    fn by_vndf<M: Masking, F: Fresnel>(draw: [f64; 2], mu_e: f64, s: &Setting) -> [f64; 2];
 }
 
 /// A map's tan θm = p/m at r, and `weight` = w dv/dr / m, where D cos θm dωm = w dv dφ / 2π.

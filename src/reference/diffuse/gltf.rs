@@ -2,6 +2,7 @@
 
 use crate::reference::directions::Pair;
 use crate::reference::{Angles, Reference, definition, fresnel::schlick};
+use crate::setting::Setting;
 use std::f64::consts::FRAC_1_PI;
 
 /// Khronos 2021, *glTF 2.0 Specification*, Appendix B.3.5 (`fresnel_mix`): Lambert's lobe under the light
@@ -13,11 +14,11 @@ pub static GLTF_DIFFUSE: &dyn Reference = &GltfDiffuse;
 struct GltfDiffuse;
 
 impl Reference for GltfDiffuse {
-    fn brdf(&self, angles: &Angles, _alpha: f64) -> Option<[f64; 2]> {
+    fn brdf(&self, angles: &Angles, _: &Setting) -> Option<[f64; 2]> {
         Some(value(angles))
     }
 
-    fn rho_dh(&self, mu: f64, _alpha: f64) -> [f64; 2] {
+    fn rho_dh(&self, mu: f64, _: &Setting) -> [f64; 2] {
         definition::rho_dh(value, mu)
     }
 }

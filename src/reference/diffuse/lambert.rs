@@ -1,6 +1,7 @@
 //! The perfect diffuser.
 
 use crate::reference::{Angles, Reference, definition};
+use crate::setting::Setting;
 use std::f64::consts::FRAC_1_PI;
 
 /// Lambert 1760: A = 1/π.
@@ -9,11 +10,11 @@ pub static LAMBERT: &dyn Reference = &Lambert;
 struct Lambert;
 
 impl Reference for Lambert {
-    fn brdf(&self, _angles: &Angles, _alpha: f64) -> Option<[f64; 2]> {
+    fn brdf(&self, _angles: &Angles, _: &Setting) -> Option<[f64; 2]> {
         Some([FRAC_1_PI, 0.0])
     }
 
-    fn rho_dh(&self, mu: f64, _alpha: f64) -> [f64; 2] {
+    fn rho_dh(&self, mu: f64, _: &Setting) -> [f64; 2] {
         definition::rho_dh(|_| [FRAC_1_PI, 0.0], mu)
     }
 }

@@ -1,16 +1,17 @@
 //! A reflectance that is the same at every angle.
 
 use super::Fresnel;
+use crate::setting::Setting;
 
 /// F = F0.
 pub(crate) struct Constant;
 
 impl Fresnel for Constant {
-    fn weights(&self, _cos_d: f64, _one_minus_cos_d: f64) -> [f64; 2] {
+    fn weights(&self, _cos_d: f64, _one_minus_cos_d: f64, _: &Setting) -> [f64; 2] {
         [1.0, 0.0]
     }
 
-    fn mean(&self) -> [f64; 2] {
+    fn mean(&self, _: &Setting) -> [f64; 2] {
         [1.0, 0.0]
     }
 }

@@ -1,17 +1,18 @@
 //! Schlick's approximation of the Fresnel reflectance.
 
 use super::Fresnel;
+use crate::setting::Setting;
 
 /// Schlick 1994, eq. 15: F = F0 + (1 − F0) Fc with Fc = (1 − ωi·ωm)⁵.
 pub(crate) struct Schlick;
 
 impl Fresnel for Schlick {
-    fn weights(&self, cos_d: f64, one_minus_cos_d: f64) -> [f64; 2] {
+    fn weights(&self, cos_d: f64, one_minus_cos_d: f64, _: &Setting) -> [f64; 2] {
         weights(cos_d, one_minus_cos_d)
     }
 
     /// 2 ∫ (1 − μ)⁵ μ dμ = 1/21.
-    fn mean(&self) -> [f64; 2] {
+    fn mean(&self, _: &Setting) -> [f64; 2] {
         [20.0 / 21.0, 1.0 / 21.0]
     }
 }

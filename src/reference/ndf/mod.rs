@@ -2,11 +2,13 @@
 
 pub(super) mod ggx;
 
+use crate::setting::Setting;
+
 /// D(ωm) of a rough surface, isotropic and shape-invariant: a function of tan θm / α but for cos⁴ θm.
 pub(crate) trait Ndf: Sync {
     /// D, sr⁻¹, at α > 0; its projection ∫ D cos θm dωm is 1.
-    fn d(&self, cos2_m: f64, tan2_m: f64, alpha: f64) -> f64;
+    fn d(&self, cos2_m: f64, tan2_m: f64, setting: &Setting) -> f64;
 
     /// Smith's Λ of this distribution: projected hidden area over visible area, at tan² θ of a direction.
-    fn lambda(&self, tan2: f64, alpha: f64) -> f64;
+    fn lambda(&self, tan2: f64, setting: &Setting) -> f64;
 }
