@@ -452,7 +452,7 @@ fn the_terms_of_a_model_are_chosen_by_name() {
     assert!((value * 4.0 * PI * 0.01 - 1.0).abs() < 1e-6, "{value}");
     assert_eq!(json["subject"], "ggx-smith-separable-none");
     for (set, words) in [
-        ("--set=masking=smith", "smith-correlated, smith-separable, none"),
+        ("--set=masking=smith", "smith-correlated, smith-separable, schlick-ggx"),
         ("--set=fresnel=exact", "schlick, none"),
         ("--set=masking=2", "a text in quotes"),
     ] {

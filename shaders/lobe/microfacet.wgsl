@@ -10,7 +10,7 @@ fn lobe_row(p: Pair, alpha: real) -> real {
     return visibility(p.mu_i, p.mu_e, alpha);
 }
 
-/// α → 0 at fixed μ: the ideal mirror's.
+/// α → 0 at fixed μ: the ideal mirror's, as far as the masking lets it.
 fn mirror_limit(mu_e: real) -> real2 {
-    return fresnel(mu_e, 1.0 - mu_e);
+    return mirror_masking(mu_e) * fresnel(mu_e, 1.0 - mu_e);
 }

@@ -9,3 +9,8 @@ fn visibility(mu_i: real, mu_e: real, alpha: real) -> real {
 fn masking(x: real4, y: real4, e: Masked) -> real4 {
     return 2.0 * e.mu * x;
 }
+
+/// G2 of the mirror that α → 0 tends to.
+fn mirror_masking(mu: real) -> real {
+    return 1.0;
+}

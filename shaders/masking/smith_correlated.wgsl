@@ -9,3 +9,8 @@ fn visibility(mu_i: real, mu_e: real, alpha: real) -> real {
 fn masking(x: real4, y: real4, e: Masked) -> real4 {
     return fma(x, e.root, smith_root_at(x, y, e));
 }
+
+/// G2 of the mirror that α → 0 tends to.
+fn mirror_masking(mu: real) -> real {
+    return 1.0;
+}

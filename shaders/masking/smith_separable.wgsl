@@ -11,3 +11,8 @@ fn masking(x: real4, y: real4, e: Masked) -> real4 {
     let inverse_g1 = 0.5 + 0.5 * e.root / e.mu; // of ωe: no node changes it
     return inverse_g1 * fma(x, real4(e.mu), smith_root_at(x, y, e));
 }
+
+/// G2 of the mirror that α → 0 tends to.
+fn mirror_masking(mu: real) -> real {
+    return 1.0;
+}

@@ -6,10 +6,11 @@
 
 use super::fresnel::{Fresnel, none::Constant, schlick::Schlick};
 use super::masking::{
-    Masking, none::Unmasked, smith_correlated::SmithCorrelated, smith_separable::SmithSeparable,
+    Masking, none::Unmasked, schlick_ggx::SchlickGgx, schlick_ggx_direct::SchlickGgxDirect,
+    smith_correlated::SmithCorrelated, smith_separable::SmithSeparable,
 };
 use super::ndf::{Map, Ndf, ggx::Ggx};
-use super::{Integral, Model, Part, Sampling, Shape, SlopeCounts, SlopeMap, Slopes, Term, is_fine, part};
+use super::{Integral, Model, Part, Sampling, Shape, SlopeCounts, SlopeMap, Slopes, Term, part};
 use crate::error::{Error, Result};
 use crate::pair::{Azimuth, Half, Pair};
 use crate::reference;
@@ -29,7 +30,8 @@ pub struct Microfacet {
 }
 
 /// The masking terms, the default first.
-pub static MASKINGS: [Term; 3] = [SmithCorrelated::TERM, SmithSeparable::TERM, Unmasked::TERM];
+pub static MASKINGS: [Term; 5] =
+    [SmithCorrelated::TERM, SmithSeparable::TERM, SchlickGgx::TERM, SchlickGgxDirect::TERM, Unmasked::TERM];
 
 /// The Fresnel terms, the default first.
 pub static FRESNELS: [Term; 2] = [Schlick::TERM, Constant::TERM];
@@ -44,6 +46,8 @@ fn with_ndf<N: Ndf>() -> Vec<Model> {
     let all = [
         with_masking::<N, SmithCorrelated>(),
         with_masking::<N, SmithSeparable>(),
+        with_masking::<N, SchlickGgx>(),
+        with_masking::<N, SchlickGgxDirect>(),
         with_masking::<N, Unmasked>(),
     ];
     all.into_iter().flatten().collect()
@@ -157,14 +161,13 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
             integrand: |r, azimuth, mu_e, s| Self::integrand(N::fine_map(r, s), azimuth, mu_e, s),
         },
         counts: Self::counts,
-        mirror_limit: |mu_e, s| F::fresnel(mu_e, 1.0 - mu_e, s),
+        mirror_limit: |mu_e, s| F::fresnel(mu_e, 1.0 - mu_e, s).map(|f| f * M::mirror(mu_e)),
         sampling: Sampling { part: N::SAMPLES, ndf: N::by_ndf::<M, F>, vndf: N::by_vndf::<M, F> },
     };
 
-    /// The NDF's error model is for correlated Smith; its fine map has nodes to spare for the rest.
+    /// The NDF's error model is for correlated Smith.
     fn counts(mu: f64, s: &Setting, tolerance: f64) -> [SlopeCounts; 2] {
-        let [near, far] = N::counts(mu, s, tolerance);
-        [if is_fine(tolerance) { near } else { M::near(near) }, far]
+        M::counts(N::counts(mu, s, tolerance), tolerance)
     }
 
     fn lobe(p: &Pair, a: &Azimuth, setting: &Setting) -> [f64; 2] {
@@ -234,6 +237,7 @@ mod tests {
     /// add to it. Without `near`, separable Smith is off by 1.3 times 1e-5 and 1.7 times 1e-6.
     #[test]
     fn the_error_model_holds_for_every_combination() {
+        let mut failed = false;
         for model in MICROFACETS.iter() {
             let Integral::Slopes(slopes) = model.integral else { continue };
             let rule = |mu: f64, s: &Setting, tolerance: f64, counts: [SlopeCounts; 2]| {
@@ -272,7 +276,8 @@ mod tests {
                 .collect();
             let most = worst.into_iter().reduce(|a, b| std::array::from_fn(|d| a[d].max(b[d]))).unwrap();
             println!("{}: {}", model.name, most.map(|x| format!("{x:.2}")).join(" "));
-            assert!(most.iter().all(|&share| share <= 1.0), "{}: {most:?} of the tolerance", model.name);
+            failed |= most.iter().any(|&share| share > 1.0);
         }
+        assert!(!failed, "some miss their tolerance");
     }
 }

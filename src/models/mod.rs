@@ -342,12 +342,15 @@ impl std::fmt::Debug for Model {
     }
 }
 
-/// A [`Part`] from its path below `shaders/`.
+/// A [`Part`] from its path below `shaders/`, and those of files that it shares with others.
 macro_rules! part {
-    ($name:literal) => {
+    ($name:literal $(, $shared:literal)*) => {
         $crate::models::Part {
             name: $name,
-            wgsl: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $name, ".wgsl")),
+            wgsl: concat!(
+                include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $name, ".wgsl"))
+                $(, "\n", include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $shared, ".wgsl")))*
+            ),
         }
     };
 }

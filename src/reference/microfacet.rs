@@ -2,7 +2,7 @@
 
 use super::directions::{MIN_MU, Pair, sin_of};
 use super::fresnel::{Fresnel, schlick::Schlick};
-use super::masking::{Masking, smith_correlated::SmithCorrelated};
+use super::masking::{Facet, Masking, smith_correlated::SmithCorrelated};
 use super::ndf::{Ndf, ggx::Ggx};
 use super::quadrature::{even_breaks, integrate};
 use super::{Angles, Factors, Reference, definition};
@@ -36,7 +36,7 @@ impl Reference for Microfacet {
 
     /// As the mean weighs ρ with 2μ, ρ may be the coarser the smaller μ is.
     fn rho_hh(&self, setting: &Setting) -> [f64; 2] {
-        if setting.alpha == 0.0 {
+        if setting.alpha == 0.0 && self.mirror(0.5, setting) == 1.0 {
             return self.fresnel.mean(setting);
         }
         definition::rho_hh(|mu| self.rho_dh_within(TOLERANCE / mu, mu, setting), setting.alpha)
@@ -62,7 +62,8 @@ impl Microfacet {
     fn rho_dh_within(&self, tolerance: f64, mu: f64, setting: &Setting) -> [f64; 2] {
         let mu = mu.clamp(MIN_MU, 1.0);
         if setting.alpha == 0.0 {
-            return self.fresnel.weights(mu, 1.0 - mu, setting);
+            let g2 = self.mirror(mu, setting);
+            return self.fresnel.weights(mu, 1.0 - mu, setting).map(|weight| g2 * weight);
         }
         // With ωe at azimuth 0, the horizon falls from tan θm ~ 2/μ to ~ μ/2 as φ passes π/2, on the scale μ:
         // φ = π/2 + μ sinh u. The other half of the normals, beyond φ = π, mirrors this one.
@@ -74,14 +75,23 @@ impl Microfacet {
         integrate(slice, &even_breaks(-reach, reach, PANEL), tolerance).value_or_nan()
     }
 
+    /// G2 of the ideal mirror: no microfacet leans, and Λ is 0.
+    fn mirror(&self, mu: f64, setting: &Setting) -> f64 {
+        self.masking.g2(&Facet { mu: [mu; 2], lambda: [0.0; 2], alpha: setting.alpha })
+    }
+
     fn factors_of(&self, pair: &Pair, setting: &Setting) -> Option<Factors> {
         if setting.alpha == 0.0 {
             return None;
         }
-        let [lambda_i, lambda_e] = [pair.tan2_i, pair.tan2_e].map(|tan2| self.ndf.lambda(tan2, setting));
+        let facet = Facet {
+            mu: [pair.mu_i, pair.mu_e],
+            lambda: [pair.tan2_i, pair.tan2_e].map(|tan2| self.ndf.lambda(tan2, setting)),
+            alpha: setting.alpha,
+        };
         Some(Factors {
             d: self.ndf.d(pair.cos2_m, pair.tan2_m, setting),
-            g2: self.masking.g2(lambda_i, lambda_e),
+            g2: self.masking.g2(&facet),
             fc: self.fresnel.weights(pair.cos_d, pair.one_minus_cos_d, setting)[1],
         })
     }
@@ -115,7 +125,8 @@ impl Microfacet {
             let cos_d = wo.dot(wm);
             let mu_i = f64::clamp(2.0 * cos_d * wm.z - wo.z, 0.0, 1.0);
             let lambda_i = self.ndf.lambda((sin_of(mu_i) / mu_i).powi(2), setting);
-            let g2 = self.masking.g2(lambda_i, lambda_o);
+            let facet = Facet { mu: [mu_i, mu], lambda: [lambda_i, lambda_o], alpha };
+            let g2 = self.masking.g2(&facet);
             let d = self.ndf.d(cos_m * cos_m, tan_m * tan_m, setting);
 
             // dωm = sin θm dθm dφ, dθm = cos²θm α cosh v dv.

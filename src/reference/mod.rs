@@ -26,7 +26,11 @@ pub use diffuse::{gltf::GLTF_DIFFUSE, lambert::LAMBERT};
 pub use directions::{Angles, MIN_MU};
 pub(crate) use fresnel::{Fresnel, none::Constant, schlick::Schlick};
 pub(crate) use masking::{
-    Masking, none::Unmasked, smith_correlated::SmithCorrelated, smith_separable::SmithSeparable,
+    Masking,
+    none::Unmasked,
+    schlick_ggx::{SchlickGgx, SchlickGgxDirect},
+    smith_correlated::SmithCorrelated,
+    smith_separable::SmithSeparable,
 };
 pub use microfacet::GGX;
 pub(crate) use microfacet::Microfacet;

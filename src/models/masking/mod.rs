@@ -1,6 +1,9 @@
 //! Masking and shadowing of microfacets.
 
 pub(crate) mod none;
+mod schlick;
+pub(crate) mod schlick_ggx;
+pub(crate) mod schlick_ggx_direct;
 pub(crate) mod smith_correlated;
 pub(crate) mod smith_separable;
 
@@ -8,6 +11,14 @@ use super::ndf::Ndf;
 use super::{Parameter, SlopeCounts, Term};
 use crate::reference;
 use crate::setting::{Parameters, Setting};
+
+/// A quarter more. In fours, so that few rules differ.
+pub(crate) fn more(SlopeCounts { azimuths, nodes }: SlopeCounts) -> SlopeCounts {
+    SlopeCounts {
+        azimuths: azimuths + azimuths.div_ceil(4),
+        nodes: (nodes + nodes.div_ceil(4)).next_multiple_of(4),
+    }
+}
 
 /// G2 of the normals of `N`.
 pub(crate) trait Masking {
@@ -20,8 +31,9 @@ pub(crate) trait Masking {
     /// Why ρ has no bound, if it has none.
     const UNBOUNDED: Option<&'static str> = None;
 
-    /// What it takes where cos φ > 0, the side on which the horizon turns, and correlated Smith takes so much.
-    fn near(correlated: SlopeCounts) -> SlopeCounts {
+    /// What it takes where cos φ > 0, the side on which the horizon turns, and where cos φ < 0, when correlated
+    /// Smith takes so much.
+    fn counts(correlated: [SlopeCounts; 2], _tolerance: f64) -> [SlopeCounts; 2] {
         correlated
     }
 
@@ -30,4 +42,9 @@ pub(crate) trait Masking {
 
     /// G2 = 2 μe x / masking(x, y), for μi = μe x/y.
     fn masking<N: Ndf>(x: f64, y: f64, mu_e: f64, s: &Setting) -> f64;
+
+    /// G2 of the mirror that α → 0 tends to.
+    fn mirror(_mu: f64) -> f64 {
+        1.0
+    }
 }

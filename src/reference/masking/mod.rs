@@ -1,11 +1,21 @@
 //! Masking and shadowing.
 
 pub(super) mod none;
+pub(super) mod schlick_ggx;
 pub(super) mod smith_correlated;
 pub(super) mod smith_separable;
 
+/// What G2 may depend on: the directions about a microfacet.
+pub(crate) struct Facet {
+    /// cos θ of both directions.
+    pub mu: [f64; 2],
+    /// Smith's Λ of both.
+    pub lambda: [f64; 2],
+    pub alpha: f64,
+}
+
 /// G2(ωi, ωe): the share of microfacets that are neither masked nor shadowed.
 pub(crate) trait Masking: Sync {
-    /// G2 from Smith's Λ of the two directions.
-    fn g2(&self, lambda_i: f64, lambda_e: f64) -> f64;
+    /// G2 above the horizon.
+    fn g2(&self, facet: &Facet) -> f64;
 }

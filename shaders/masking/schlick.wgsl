@@ -1,0 +1,21 @@
+// What Schlick's masking is for either k.
+
+/// G2 / (4 μi μe)
+fn visibility(mu_i: real, mu_e: real, alpha: real) -> real {
+    let k = schlick_k(alpha);
+    return 0.25 / ((mu_i * (1.0 - k) + k) * (mu_e * (1.0 - k) + k));
+}
+
+/// G2 = 2 μe x / masking(x, y), for μi = μe x/y.
+fn masking(x: real4, y: real4, e: Masked) -> real4 {
+    let k = schlick_ks(e.a2);
+    let rest = e.mu * (1.0 - k);
+    return (2.0 / e.mu) * (rest + k) * fma(x, rest, k * y);
+}
+
+/// G2 of the mirror that α → 0 tends to.
+fn mirror_masking(mu: real) -> real {
+    let k = schlick_k(0.0);
+    let g1 = mu / (mu * (1.0 - k) + k);
+    return g1 * g1;
+}
