@@ -109,7 +109,7 @@ fn integrals_conserve_energy_and_meet_closed_forms() {
             let plan = basis(&SPLIT_SUM, model, &[alpha.sqrt()], vec![listed(Mu, &[mu])]);
             bake(device(), &plan, Check::Sample(0)).values.iter().sum::<f64>()
         };
-        let masking = model.microfacet.unwrap().masking.name;
+        let masking = model.terms()[0].2.name;
         if let Some(k) = [("schlick-ggx", 0.0), ("schlick-ggx-direct", 0.125)].iter().find(|k| k.0 == masking)
         {
             // The mirror's, masked by G1² with k of α = 0.

@@ -5,6 +5,7 @@ fn fresnel(c: real, x: real) -> real2 {
     return real2(1.0, 0.0);
 }
 
-fn fresnel_grazing(x: real4) -> real4 {
+/// 1 − A = 0.
+fn fresnel_complement(c: real4) -> real4 {
     return real4();
 }

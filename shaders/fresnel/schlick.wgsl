@@ -7,8 +7,9 @@ fn fresnel(c: real, x: real) -> real2 {
     return real2(c * (1.0 + x + x2 * (1.0 + x + x2)), x2 * x2 * x);
 }
 
-/// Fc for integrals, where absolute error counts.
-fn fresnel_grazing(x: real4) -> real4 {
+/// 1 − A = Fc for integrals, where absolute error counts.
+fn fresnel_complement(c: real4) -> real4 {
+    let x = 1.0 - c;
     let x2 = x * x;
     return x2 * x2 * x;
 }

@@ -17,8 +17,8 @@ struct Map {
     divisor: real4,
 }
 
-/// The integrand at r, times w dv/dr and a node's weight: without Fresnel, and its part that F90 weighs. Both
-/// over 2 NDF_MAP_WEIGHT.
+/// The integrand at r, times w dv/dr and a node's weight: without Fresnel, and the part of it that A lacks, which
+/// is B where there is one. Both over 2 NDF_MAP_WEIGHT.
 struct Slope {
     all: real4,
     grazing: real4,
@@ -33,6 +33,6 @@ fn slope_term(r: real4, weight: real, azimuth: SlopeAzimuth, e: Masked, tan_scal
     let below = masking(x, y, e) * map.divisor;
     let inverse = 1.0 / (root * below);
     let all = x * projected * (map.weight * weight) * (root * inverse);
-    let c = min(projected * (below * inverse), real4(1.0));
-    return Slope(all, all * fresnel_grazing(1.0 - c));
+    let c = clamp(projected * (below * inverse), real4(), real4(1.0));
+    return Slope(all, all * fresnel_complement(c));
 }

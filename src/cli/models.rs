@@ -113,20 +113,13 @@ fn parameters(model: &Model) -> Vec<Parameter> {
         default: p.default.map(|x| x.to_string()),
         what: p.summary.into(),
     }));
-    if let Some(made) = model.microfacet {
-        for (name, terms, term) in
-            [("masking", &MASKINGS[..], &made.masking), ("fresnel", &FRESNELS[..], &made.fresnel)]
-        {
-            let range = terms.iter().map(|term| term.name).collect::<Vec<_>>().join(" | ");
-            all.push(Parameter {
-                name,
-                range,
-                unit: "",
-                default: Some(term.name.into()),
-                what: term.summary.into(),
-            });
-        }
-    }
+    all.extend(model.terms().into_iter().map(|(name, terms, term)| Parameter {
+        name,
+        range: terms.iter().map(|term| term.name).collect::<Vec<_>>().join(" | "),
+        unit: "",
+        default: Some(term.name.into()),
+        what: term.summary.into(),
+    }));
     all.extend(model.components.iter().map(|&Component { name, weight, default }| Parameter {
         name: weight,
         range: "[0, 1], or three for R, G, B".into(),

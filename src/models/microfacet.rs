@@ -10,7 +10,7 @@ use super::masking::{
     smith_correlated::SmithCorrelated, smith_separable::SmithSeparable,
 };
 use super::ndf::{Map, Ndf, ggx::Ggx};
-use super::{Integral, Model, Part, Sampling, Shape, SlopeCounts, SlopeMap, Slopes, Term, part};
+use super::{Integral, Model, Part, Sampling, Shape, SlopeCounts, SlopeMap, Slopes, Term, mirror, part};
 use crate::error::{Error, Result};
 use crate::pair::{Azimuth, Half, Pair};
 use crate::reference;
@@ -18,44 +18,48 @@ use crate::setting::Setting;
 use std::marker::PhantomData;
 use std::sync::LazyLock;
 
-/// What a microfacet model is made of.
+/// What a model with terms is made of.
 #[derive(Debug)]
 pub struct Microfacet {
-    /// The distribution of normals.
+    /// The distribution of normals; the mirror's are all n.
     pub ndf: Term,
-    /// Masking and shadowing.
-    pub masking: Term,
+    /// Masking and shadowing; of a mirror there is none.
+    pub masking: Option<Term>,
     /// The Fresnel term.
     pub fresnel: Term,
 }
 
-/// The masking terms, the default first.
-pub static MASKINGS: [Term; 5] =
-    [SmithCorrelated::TERM, SmithSeparable::TERM, SchlickGgx::TERM, SchlickGgxDirect::TERM, Unmasked::TERM];
+/// The parts there are: the default is the first of its kind, and an entry here is all that a new one takes.
+/// Every combination of them is a model, and the mirror with each Fresnel term.
+macro_rules! parts {
+    (ndfs: $($ndf:ty),*; maskings: $($masking:ty),*; fresnels: $($fresnel:ty),*;) => {
+        /// The masking terms, the default first.
+        pub static MASKINGS: [Term; [$(<$masking>::TERM.name),*].len()] = [$(<$masking>::TERM),*];
 
-/// The Fresnel terms, the default first.
-pub static FRESNELS: [Term; 2] = [Schlick::TERM, Constant::TERM];
+        /// The Fresnel terms, the default first.
+        pub static FRESNELS: [Term; [$(<$fresnel>::TERM.name),*].len()] = [$(<$fresnel>::TERM),*];
 
-/// Every NDF …
-fn all() -> Vec<Model> {
-    [with_ndf::<Ggx>()].into_iter().flatten().collect()
+        fn with_fresnels<N: Ndf, M: Masking>() -> Vec<Model> {
+            vec![$(named(Made::<N, M, $fresnel>::MODEL)),*]
+        }
+
+        fn with_maskings<N: Ndf>() -> Vec<Model> {
+            [$(with_fresnels::<N, $masking>()),*].into_iter().flatten().collect()
+        }
+
+        /// All microfacet models: every NDF with every masking and every Fresnel term.
+        pub static MICROFACETS: LazyLock<Vec<Model>> =
+            LazyLock::new(|| [$(with_maskings::<$ndf>()),*].into_iter().flatten().collect());
+
+        /// The ideal mirror with every Fresnel term.
+        pub static MIRRORS: LazyLock<Vec<Model>> = LazyLock::new(|| vec![$(named(mirror::Made::<$fresnel>::MODEL)),*]);
+    };
 }
 
-/// … with every masking …
-fn with_ndf<N: Ndf>() -> Vec<Model> {
-    let all = [
-        with_masking::<N, SmithCorrelated>(),
-        with_masking::<N, SmithSeparable>(),
-        with_masking::<N, SchlickGgx>(),
-        with_masking::<N, SchlickGgxDirect>(),
-        with_masking::<N, Unmasked>(),
-    ];
-    all.into_iter().flatten().collect()
-}
-
-/// … and every Fresnel term, in the order of the lists above.
-fn with_masking<N: Ndf, M: Masking>() -> [Model; FRESNELS.len()] {
-    [named(Made::<N, M, Schlick>::MODEL), named(Made::<N, M, Constant>::MODEL)]
+parts! {
+    ndfs: Ggx;
+    maskings: SmithCorrelated, SmithSeparable, SchlickGgx, SchlickGgxDirect, Unmasked;
+    fresnels: Schlick, Constant;
 }
 
 /// GGX with the defaults.
@@ -65,31 +69,41 @@ pub(super) static GGX: Model = Model {
     ..Made::<Ggx, SmithCorrelated, Schlick>::MODEL
 };
 
-/// All microfacet models: every NDF with every masking and every Fresnel term.
-pub static MICROFACETS: LazyLock<Vec<Model>> = LazyLock::new(all);
-
 impl Model {
-    /// This microfacet model with other terms.
+    /// The kinds of terms that recipes choose: what they call the kind, what there is of it, and which one this
+    /// model has. None of a model that is not made of terms.
+    pub fn terms(&self) -> Vec<(&'static str, &'static [Term], &'static Term)> {
+        let Some(made) = self.microfacet else { return Vec::new() };
+        let masking = made.masking.as_ref().map(|masking| ("masking", &MASKINGS[..], masking));
+        masking.into_iter().chain([("fresnel", &FRESNELS[..], &made.fresnel)]).collect()
+    }
+
+    /// This model with other terms.
     ///
     /// # Errors
     /// When it has no such terms, or there is none of this name.
     pub fn with_terms(&self, masking: Option<&str>, fresnel: Option<&str>) -> Result<&'static Self> {
-        let made = self.microfacet.ok_or_else(|| {
-            Error::input(format!(
-                "{} is no microfacet model; it has no masking and no fresnel to choose",
-                self.name
-            ))
-        })?;
-        let masking = term("masking", &MASKINGS, masking.unwrap_or(made.masking.name))?;
-        let fresnel = term("fresnel", &FRESNELS, fresnel.unwrap_or(made.fresnel.name))?;
-        let is_it = |of: &Microfacet| {
-            [of.ndf.name, of.masking.name, of.fresnel.name] == [made.ndf.name, masking.name, fresnel.name]
+        let terms = self.terms();
+        let choose = |kind: &str, name: Option<&str>| {
+            let own = terms.iter().find(|(name, ..)| *name == kind);
+            match (own, name) {
+                (Some((_, there, own)), name) => Ok(Some(term(kind, there, name.unwrap_or(own.name))?.name)),
+                (None, None) => Ok(None),
+                (None, Some(_)) if terms.is_empty() => Err(Error::input(format!(
+                    "{} is no microfacet model; it has no masking and no fresnel to choose",
+                    self.name
+                ))),
+                (None, Some(_)) => Err(Error::input(format!("{} has no {kind} to choose", self.name))),
+            }
         };
-        MICROFACETS.iter().find(|model| model.microfacet.is_some_and(is_it)).ok_or_else(|| {
-            Error::Internal(format!(
-                "{} with {} and {} is not made",
-                made.ndf.name, masking.name, fresnel.name
-            ))
+        let (masking, fresnel) = (choose("masking", masking)?, choose("fresnel", fresnel)?);
+        let it = self.microfacet.map(|made| (made.ndf.name, masking, fresnel));
+        let names = |of: &Microfacet| {
+            (of.ndf.name, of.masking.as_ref().map(|masking| masking.name), Some(of.fresnel.name))
+        };
+        let mut made = MICROFACETS.iter().chain(MIRRORS.iter());
+        made.find(|model| model.microfacet.map(names) == it).ok_or_else(|| {
+            Error::Internal(format!("{} with {masking:?} and {fresnel:?} is not made", self.name))
         })
     }
 }
@@ -101,16 +115,20 @@ fn term(kind: &str, terms: &'static [Term], name: &str) -> Result<&'static Term>
     })
 }
 
-/// The model with a name that tells its terms: the NDF's alone with the defaults, else all three. It is made
+/// The model with a name that tells its terms: the NDF's alone with the defaults, else all of them. It is made
 /// once and lives as long as the process.
 fn named(model: Model) -> Model {
     let Some(Microfacet { ndf, masking, fresnel }) = model.microfacet else { return model };
-    let keep = |text: String| -> &'static str { text.leak() };
-    let is_default = masking.name == MASKINGS[0].name && fresnel.name == FRESNELS[0].name;
+    let terms: Vec<_> = [ndf].into_iter().chain(masking).chain([fresnel]).collect();
+    let keep = |text: fn(&Term) -> &'static str, between: &str| -> &'static str {
+        terms.iter().map(|&term| text(term)).collect::<Vec<_>>().join(between).leak()
+    };
+    let is_default =
+        masking.as_ref().is_none_or(|m| m.name == MASKINGS[0].name) && fresnel.name == FRESNELS[0].name;
     Model {
-        name: if is_default { ndf.name } else { keep([ndf.name, masking.name, fresnel.name].join("-")) },
-        summary: keep([ndf.summary, masking.summary, fresnel.summary].join(", ")),
-        source: keep([ndf.source, masking.source, fresnel.source].join("; ")),
+        name: if is_default { ndf.name } else { keep(|term| term.name, "-") },
+        summary: keep(|term| term.summary, ", "),
+        source: keep(|term| term.source, "; "),
         ..model
     }
 }
@@ -142,7 +160,7 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         reference: Some(&Self::REFERENCE),
     };
 
-    const TERMS: Microfacet = Microfacet { ndf: N::TERM, masking: M::TERM, fresnel: F::TERM };
+    const TERMS: Microfacet = Microfacet { ndf: N::TERM, masking: Some(M::TERM), fresnel: F::TERM };
 
     const PARTS: [Part; 4] = [F::TERM.part, N::TERM.part, M::TERM.part, part!("lobe/microfacet")];
 
@@ -182,7 +200,7 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         let y = m * m + p * p;
         let x = (t_max * m - p) * (p + t_max_inverse * m); // cos θi = μe x/y
         let all = 2.0 * x * projected * weight / M::masking::<N>(x, y, mu_e, s);
-        let c = (projected / y.sqrt()).min(1.0);
+        let c = (projected / y.sqrt()).clamp(0.0, 1.0);
         F::fresnel(c, 1.0 - c, s).map(|f| f * all)
     }
 }
@@ -205,11 +223,15 @@ mod tests {
             assert!(!names[..k].contains(name), "{name}");
             assert_eq!(models::find(name).unwrap().name, *name);
         }
-        assert_eq!(names.len(), MODELS.len() + MICROFACETS.len() - 1);
+        assert_eq!(names.len(), MODELS.len() + MICROFACETS.len() + MIRRORS.len() - 2);
         for model in MICROFACETS.iter() {
             let made = model.microfacet.unwrap();
-            let again = GGX.with_terms(Some(made.masking.name), Some(made.fresnel.name)).unwrap();
-            assert_eq!(again, model);
+            let masking = made.masking.as_ref().map(|masking| masking.name);
+            assert_eq!(GGX.with_terms(masking, Some(made.fresnel.name)).unwrap(), model);
+        }
+        for model in MIRRORS.iter() {
+            let fresnel = model.microfacet.unwrap().fresnel.name;
+            assert_eq!(mirror::MODEL.with_terms(None, Some(fresnel)).unwrap(), model);
         }
         assert_eq!(GGX.with_terms(None, None).unwrap(), &GGX);
         assert_eq!(MICROFACETS[0].summary, GGX.summary);

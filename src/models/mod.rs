@@ -11,7 +11,7 @@ mod microfacet;
 mod mirror;
 mod ndf;
 
-pub use microfacet::{FRESNELS, MASKINGS, MICROFACETS, Microfacet};
+pub use microfacet::{FRESNELS, MASKINGS, MICROFACETS, MIRRORS, Microfacet};
 
 use crate::error::{Error, Result};
 use crate::pair::{Azimuth, Pair};
@@ -28,7 +28,7 @@ pub struct Model {
     pub summary: &'static str,
     /// Author, year, equation.
     pub source: &'static str,
-    /// What it is made of, if it is a microfacet model: then it has siblings of other terms.
+    /// What it is made of, if it is made of terms: then it has siblings of others.
     pub microfacet: Option<&'static Microfacet>,
     /// Its components: `A` alone, or `A` and `B` where Fresnel splits it.
     pub components: &'static [Component],
@@ -196,8 +196,8 @@ pub const ALPHA_MIN_VALUE: f64 = 1e-6;
 /// (α/μ)² = 2e-10.
 pub const ALPHA_MIN_INTEGRAL: f64 = 1e-12;
 
-/// The models by the names that recipes begin from; [`MICROFACETS`] has the siblings of those that are made
-/// of terms.
+/// The models by the names that recipes begin from; [`MICROFACETS`] and [`MIRRORS`] have the siblings of those
+/// that are made of terms.
 pub static MODELS: [&Model; 4] =
     [&diffuse::lambert::MODEL, &diffuse::gltf_diffuse::MODEL, &microfacet::GGX, &mirror::MODEL];
 
@@ -224,9 +224,9 @@ pub fn find(name: &str) -> Result<&'static Model> {
     })
 }
 
-/// Every model: [`MODELS`], and then those microfacet models that are not among them.
+/// Every model: [`MODELS`], and then their siblings of other terms.
 pub fn all() -> impl Iterator<Item = &'static Model> {
-    let siblings = MICROFACETS.iter().filter(|model| !MODELS.contains(model));
+    let siblings = MICROFACETS.iter().chain(MIRRORS.iter()).filter(|model| !MODELS.contains(model));
     MODELS.into_iter().chain(siblings)
 }
 
@@ -240,6 +240,10 @@ impl Slopes {
 impl Component {
     /// The one component of a diffuse lobe.
     const DIFFUSE: [Self; 1] = [Self { name: "A", weight: "albedo", default: None }];
+
+    /// What of an exact Fresnel term is shown: all of it, unless an artist dims it.
+    #[expect(dead_code, reason = "the exact terms take it")]
+    const SPECULAR: [Self; 1] = [Self { name: "A", weight: "specular", default: Some(1.0) }];
 
     /// What Schlick's Fresnel splits a lobe into.
     const fn schlick(f0: f64) -> [Self; 2] {

@@ -25,9 +25,9 @@ impl Reference for Microfacet {
     /// Walter et al. 2007, eq. 20: f = F D G2 / (4 μi μe).
     fn brdf(&self, angles: &Angles, setting: &Setting) -> Option<[f64; 2]> {
         let pair = Pair::new(angles);
-        let Factors { d, g2, .. } = self.factors_of(&pair, setting)?;
+        let Factors { d, g2, f } = self.factors_of(&pair, setting)?;
         let s = d * g2 / (4.0 * pair.mu_i * pair.mu_e);
-        Some(self.fresnel.weights(pair.cos_d, pair.one_minus_cos_d, setting).map(|weight| s * weight))
+        Some(f.map(|weight| s * weight))
     }
 
     fn rho_dh(&self, mu: f64, setting: &Setting) -> [f64; 2] {
@@ -92,7 +92,7 @@ impl Microfacet {
         Some(Factors {
             d: self.ndf.d(pair.cos2_m, pair.tan2_m, setting),
             g2: self.masking.g2(&facet),
-            fc: self.fresnel.weights(pair.cos_d, pair.one_minus_cos_d, setting)[1],
+            f: self.fresnel.weights(pair.cos_d, pair.one_minus_cos_d, setting),
         })
     }
 

@@ -5,9 +5,12 @@ use super::{Angles, Reference};
 use crate::setting::Setting;
 
 /// f = F δ(θi − θe) δ(δφ) / (cos θi sin θi) with Schlick's F: A = 1 − Fc and B = Fc under the delta.
-pub static MIRROR: &dyn Reference = &Mirror;
+pub static MIRROR: &dyn Reference = &Mirror { fresnel: &Schlick };
 
-struct Mirror;
+/// The same with any Fresnel term.
+pub(crate) struct Mirror {
+    pub fresnel: &'static dyn Fresnel,
+}
 
 impl Reference for Mirror {
     /// A delta has no value.
@@ -18,10 +21,10 @@ impl Reference for Mirror {
     /// ωm = n: ρ_dh = F(μ).
     fn rho_dh(&self, mu: f64, setting: &Setting) -> [f64; 2] {
         let mu = mu.clamp(0.0, 1.0);
-        Schlick.weights(mu, 1.0 - mu, setting)
+        self.fresnel.weights(mu, 1.0 - mu, setting)
     }
 
     fn rho_hh(&self, setting: &Setting) -> [f64; 2] {
-        Schlick.mean(setting)
+        self.fresnel.mean(setting)
     }
 }

@@ -35,12 +35,13 @@ pub(crate) use masking::{
 pub use microfacet::GGX;
 pub(crate) use microfacet::Microfacet;
 pub use mirror::MIRROR;
+pub(crate) use mirror::Mirror;
 pub(crate) use ndf::{Ndf, ggx::Ggx};
 
 /// The f64 reference of a model.
 ///
-/// A model's BRDF is f = a·A + b·B, its integrals likewise; each function returns [A, B]. A is what F0
-/// weighs and B what F90 weighs; a model without Fresnel has B = 0. A model without roughness ignores
+/// A model's BRDF is f = a·A + b·B, its integrals likewise; each function returns [A, B]. Under Schlick's Fresnel
+/// A is what F0 weighs and B what F90 weighs; a model with one component has B = 0. A model without roughness ignores
 /// the setting's `alpha`; that of microfacets is in [0, 1]. An integral that did not converge is NaN.
 pub trait Reference: Sync {
     /// f in sr⁻¹, without the cosine; `None` where it is a delta and has no value.
@@ -60,13 +61,13 @@ pub trait Reference: Sync {
     }
 }
 
-/// What a microfacet BRDF is made of: f = F·D·G2 / (4 μi μe), F = F0 (1 − Fc) + F90 Fc.
+/// What a microfacet BRDF is made of: f = F·D·G2 / (4 μi μe), F = Σ weight · `f`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Factors {
     /// D(ωm), sr⁻¹: the density of microfacet normals.
     pub d: f64,
     /// G2(ωi, ωe): the share of microfacets that both directions see.
     pub g2: f64,
-    /// Fc: the Fresnel term's weight of F90.
-    pub fc: f64,
+    /// The Fresnel term's components, as those of f.
+    pub f: [f64; 2],
 }

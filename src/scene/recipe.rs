@@ -5,7 +5,7 @@ mod document;
 use super::{Distribution, Material, MaterialLobe, Scene, SubjectRequest, TableRequest, Weights};
 use crate::axis::{Axis, MAX_COUNT, Mapping, Positions, Variable};
 use crate::error::{Error, Result};
-use crate::models::{self, Component, FRESNELS, MASKINGS, MODELS, Model, Shape};
+use crate::models::{self, Component, MODELS, Model, Shape};
 use crate::plan::{MAX_GAUSS, MAX_GRID, MAX_SAMPLES, Rule};
 use crate::quantity::{Evaluation, QUANTITIES};
 use crate::storage::Storage;
@@ -68,7 +68,7 @@ fn lobe(item: Item) -> Result<MaterialLobe> {
     let fields = item.any_table()?;
     let model = model(&fields, fields.require("model")?)?;
     let mut keys = vec!["model"];
-    keys.extend(if model.microfacet.is_some() { &["masking", "fresnel"][..] } else { &[] });
+    keys.extend(model.terms().into_iter().map(|(kind, ..)| kind));
     keys.extend(model.shape.iter().flat_map(|shape| ["roughness", shape.name]));
     keys.extend(model.parameters().map(|parameter| parameter.name));
     keys.extend(model.components.iter().map(|component| component.weight));
@@ -261,17 +261,17 @@ fn subject(
     }
 }
 
-/// `model = "ggx"`, and where it is a microfacet model the terms that stand beside it: `masking`, `fresnel`.
+/// `model = "ggx"`, and where it is made of terms those that stand beside it: `masking`, `fresnel`.
 fn model(fields: &Fields, item: Item) -> Result<&'static Model> {
     let named = item.text().ok().and_then(|name| models::find(name).ok());
     let model = named.map_or_else(|| item.one_of(MODELS.iter().map(|&model| (model.name, model))), Ok)?;
-    let terms = [("masking", &MASKINGS[..]), ("fresnel", &FRESNELS[..])];
-    let [masking, fresnel] = terms.map(|(key, terms)| match fields.get(key) {
-        None => Ok(None),
-        Some(item) if model.microfacet.is_none() => {
-            Err(item.refuse(&format!("{} is no microfacet model; leave this away", model.name)))
-        }
-        Some(item) => item.one_of(terms.iter().map(|term| (term.name, Some(term.name)))),
+    let terms = model.terms();
+    let [masking, fresnel] = ["masking", "fresnel"].map(|key| {
+        let Some(item) = fields.get(key) else { return Ok(None) };
+        let Some((_, there, _)) = terms.iter().find(|(kind, ..)| *kind == key) else {
+            return Err(item.refuse(&format!("{} has no {key} to choose; leave this away", model.name)));
+        };
+        item.one_of(there.iter().map(|term| (term.name, Some(term.name))))
     });
     match (masking?, fresnel?) {
         (None, None) => Ok(model),

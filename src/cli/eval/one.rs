@@ -21,7 +21,7 @@ struct Factors {
     d: f64,
     #[serde(rename = "G2")]
     g2: f64,
-    /// F0 (1 − Fc) + F90 Fc of each channel.
+    /// The weighted sum of the Fresnel term's components, for each channel.
     #[serde(rename = "F")]
     f: Vec<f64>,
 }
@@ -85,7 +85,7 @@ fn factors(lobe: &Lobe, angles: &Angles) -> Option<Factors> {
         .model
         .reference?
         .factors(&reference::Angles { theta_i, theta_e, delta_phi }, &lobe.setting_at(None))?;
-    let f = |&[f0, f90]: &[f64; 2]| f0 * (1.0 - factors.fc) + f90 * factors.fc;
+    let f = |&[a, b]: &[f64; 2]| a * factors.f[0] + b * factors.f[1];
     let f = lobe.weights.iter().map(f).collect();
     Some(Factors { model: lobe.model.name, d: factors.d, g2: factors.g2, f })
 }
