@@ -323,7 +323,10 @@ impl TablePlan {
             let value = self.quantity.evaluation == Evaluation::Value;
             let more = match value && !streams {
                 true => {
-                    format!(", or store it as f32, to {VALUE_F32:.1e} or more: then it need not fit memory")
+                    format!(
+                        ", or store it as f32, to {:.1e} or more: then it need not fit memory",
+                        self.value_f32()
+                    )
                 }
                 false => String::new(),
             };
@@ -366,13 +369,17 @@ impl TablePlan {
         }
         for Lobe { model, .. } in &self.lobes {
             let fits = match model.integral {
-                Integral::Slopes(_) => true,
+                Integral::Slopes(_) => model.has_samplers() || self.rule.samples().is_none(),
                 Integral::Smooth(_) => self.rule.samples().is_none(),
                 Integral::Delta(_) => matches!(self.rule, Rule::Warped | Rule::Grid { .. }),
                 Integral::Unbounded(_) => self.quantity.evaluation == Evaluation::Value,
             };
             if !fits {
-                let what = if model.is_delta() { "a delta" } else { "no microfacet lobe" };
+                let what = match model.integral {
+                    Integral::Delta(_) => "a delta",
+                    Integral::Slopes(_) => "a lobe without samplers",
+                    _ => "no microfacet lobe",
+                };
                 return Err(format!(
                     "{} is {what}, and nothing for the {name} rule; use the warped rule",
                     model.name
@@ -397,10 +404,16 @@ impl TablePlan {
         }
     }
 
+    /// The relative error of its values in f32: that of its lobes' models.
+    pub(crate) fn value_f32(&self) -> f64 {
+        self.lobes.iter().map(|lobe| lobe.model.value_f32).fold(VALUE_F32, f64::max)
+    }
+
     /// The least arithmetic that meets the tolerance: f32 has a floor, of some hundred roundings in an
     /// integral and of [`VALUE_F32`] in a value.
     pub fn precision(&self) -> Precision {
-        let floor = if self.quantity.evaluation == Evaluation::Value { VALUE_F32 } else { INTEGRAL_F32 };
+        let floor =
+            if self.quantity.evaluation == Evaluation::Value { self.value_f32() } else { INTEGRAL_F32 };
         if self.tolerance < floor { Precision::F64 } else { Precision::F32 }
     }
 

@@ -34,6 +34,7 @@ impl SampleWork {
     pub fn new(
         sampler: Sampler,
         slopes: &'static crate::models::Slopes,
+        sampling: &'static crate::models::Sampling,
         mus: Vec<f64>,
         samples: usize,
     ) -> Self {
@@ -43,7 +44,7 @@ impl SampleWork {
             Sampler::Ndf => hammersley(samples).map(|[u, v]| [(u / (1.0 - u)).sqrt(), v]).collect(),
             Sampler::Vndf => hammersley(samples).collect(),
         };
-        let (sampling, mirror_limit) = (&slopes.sampling, slopes.mirror_limit);
+        let mirror_limit = slopes.mirror_limit;
         Self { sampler, sampling, mirror_limit, mus, chunk, chunks: samples / chunk, draws }
     }
 

@@ -2,7 +2,7 @@
 //! in f64. The device gets them rounded to f32, the CPU path as they are.
 
 use crate::axis::Variable;
-use crate::models::{Integral, Slopes, decade};
+use crate::models::{Integral, Sampling, Slopes, decade};
 use crate::pair::{Azimuth, MU_MIN, Pair};
 use crate::plan::{Lobe, Rule, TablePlan};
 use crate::quadrature::{Node, gauss_legendre, midpoint};
@@ -120,24 +120,32 @@ fn integrals(table: &TablePlan, lobe: &Lobe, thetas: &[f64], weights: &[f64]) ->
         WorkKind::Integrals { inner: Inner::Product { pairs, azimuths }, outer }
     };
     let mus = || thetas.iter().map(|theta| theta.cos().max(MU_MIN)).collect();
-    let sampled = |sampler: Sampler, slopes: &'static Slopes, samples: usize| {
-        let work = SampleWork::new(sampler, slopes, mus(), samples);
+    let sampled = |sampler: Sampler, slopes: &'static Slopes, by: &'static Sampling, samples: usize| {
+        let work = SampleWork::new(sampler, slopes, by, mus(), samples);
         let chunks = iter::repeat_n(1.0 / samples as f64, work.chunks);
         let outer = weights.iter().flat_map(|w| chunks.clone().map(move |c| w * c)).collect();
         WorkKind::Integrals { inner: Inner::Samples(work), outer }
     };
+    let sampler = match table.rule {
+        Rule::Hammersley { samples } => Some((Sampler::Ndf, samples)),
+        Rule::Vndf { samples } => Some((Sampler::Vndf, samples)),
+        Rule::Random { samples } => Some((Sampler::Random, samples)),
+        _ => None,
+    };
+    if let (Some((sampler, samples)), Integral::Slopes(slopes)) = (sampler, lobe.model.integral)
+        && let Some(by) = &slopes.sampling
+    {
+        return sampled(sampler, slopes, by, samples);
+    }
     match (table.rule, lobe.model.integral) {
-        (Rule::Hammersley { samples }, Integral::Slopes(slopes)) => sampled(Sampler::Ndf, slopes, samples),
-        (Rule::Vndf { samples }, Integral::Slopes(slopes)) => sampled(Sampler::Vndf, slopes, samples),
-        (Rule::Random { samples }, Integral::Slopes(slopes)) => sampled(Sampler::Random, slopes, samples),
         (Rule::Gauss { theta, phi }, _) => smooth(gauss_cells(theta), gauss_azimuths(phi)),
         (Rule::Grid { theta, phi }, _) => smooth(grid_cells(theta), grid_azimuths(phi)),
-        // The plan refuses the sampling rules for lobes without microfacets.
+        // The plan refuses the sampling rules for lobes without samplers.
         (_, Integral::Smooth(nodes)) => {
             let [theta, phi] = nodes(table.rule_tolerance());
             smooth(gauss_cells(theta), gauss_azimuths(2 * phi))
         }
-        (Rule::Warped, Integral::Slopes(slopes)) => {
+        (_, Integral::Slopes(slopes)) => {
             let work =
                 SlopeWork::new(slopes, mus(), &lobe.settings(table.alphas(lobe)), table.rule_tolerance());
             WorkKind::Integrals { inner: Inner::Slopes(work), outer: weights.to_vec() }

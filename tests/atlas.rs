@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::device;
+use common::*;
 use gonio::atlas::{self, Page, RECIPROCITY};
 use gonio::bake::{Evaluator, Unobserved};
 use gonio::gpu::{UserFunction, UserShader};
@@ -33,7 +33,11 @@ fn f32_is_as_near_to_f64_as_promised() {
         for band in &page.decades {
             let worst = band.worst.as_ref().unwrap();
             println!("{} {:?}: median {:.1e}, max {:.1e}", page.subject, band.alpha, band.median, band.max);
-            let promise = band.alpha.map_or(2e-6, |[low, _]| if low >= 1e-4 { 2e-6 } else { 1e-5 });
+            let promise = match page.subject.as_str() {
+                // An exponential: what rounds its exponent grows with it.
+                "beckmann" => 680.0 / f64::from(1 << 24),
+                _ => band.alpha.map_or(2e-6, |[low, _]| if low >= 1e-4 { 2e-6 } else { 1e-5 }),
+            };
             assert_eq!(band.promise, Some(promise));
             assert!(band.max <= promise, "{}: {:.2e} at {}", page.subject, band.max, worst.eval);
             assert_eq!(band.non_finite, 0, "{}: {}", page.subject, worst.eval);
@@ -51,7 +55,8 @@ fn the_cpu_path_rounds_once() {
     for page in pages(&Evaluator::Cpu) {
         let worst = page.worst().unwrap();
         let half_ulp = 1.0 / f64::from(1 << 24);
-        assert!(worst.max <= half_ulp + 2e-8, "{}: {:?}", page.subject, worst.worst);
+        let [_, budget] = value_budgets(model(&page.subject));
+        assert!(budget >= half_ulp && worst.max <= budget, "{}: {:?}", page.subject, worst.worst);
     }
 }
 

@@ -8,7 +8,7 @@ use gonio::axis::Variable::{DeltaPhi, ThetaE, ThetaI};
 
 use gonio::check::Check;
 use gonio::models::MODELS;
-use gonio::plan::{STORED_F32, TablePlan, VALUE_F32};
+use gonio::plan::TablePlan;
 use gonio::quantity::BRDF;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -38,7 +38,7 @@ fn everywhere() -> impl Iterator<Item = TablePlan> {
 #[test]
 fn agree_with_the_reference_at_every_input() {
     for plan in everywhere() {
-        for (evaluator, budget) in evaluators().into_iter().zip([VALUE_F32, STORED_F32 + 2e-8]) {
+        for (evaluator, budget) in evaluators().into_iter().zip(value_budgets(plan.lobes[0].model)) {
             let table = bake(evaluator, &plan, Check::All);
             assert_eq!(table.error.texels_checked, plan.texels());
             let worst = table.error.measured_max.unwrap();

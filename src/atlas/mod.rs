@@ -31,7 +31,7 @@ pub use write::{to_json, write};
 use crate::bake::{Evaluator, Observer};
 use crate::error::{Error, Result};
 use crate::models::{Model, Shape};
-use crate::plan::Lobe;
+use crate::plan::{Lobe, VALUE_F32};
 use crate::points::{Angles, Points};
 use crate::reference;
 use crate::setting::Setting;
@@ -46,13 +46,13 @@ const PER_DECADE: i32 = 8;
 /// Values of a model that an atlas looks at unless told otherwise.
 pub const DEFAULT_BUDGET: u64 = 4_000_000;
 
-/// The largest relative error that a value may have at an α.
-///
-/// Were all roundings to meet at their largest, 2.4e-6 ([`VALUE_F32`](crate::plan::VALUE_F32)); that they do
+/// The largest relative error that a value of a model may have at an α: its own budget, where that is more than
+/// most models'. Else, were all roundings to meet at their largest, 2.4e-6 ([`VALUE_F32`](crate::plan::VALUE_F32)); that they do
 /// not, as their signs are chance, makes 2e-6. Where α < 1e-4 there is room for devices whose divisions are off
 /// by 2.5 ULP in place of a half, as WGSL allows.
-pub fn promise(alpha: f64) -> f64 {
-    if alpha >= 1e-4 { 2e-6 } else { 1e-5 }
+pub fn promise(model: &Model, alpha: f64) -> f64 {
+    let most = if alpha >= 1e-4 { 2e-6 } else { 1e-5 };
+    if model.value_f32 > VALUE_F32 { model.value_f32 } else { most }
 }
 
 /// What an exchange of ωi and ωe may change, relative: a driver that contracts a·b + c rounds one of its two
@@ -162,7 +162,7 @@ pub fn measure_model(
     let tallies = measure(&mut subject, &alphas, &angles, &|share| observer.advance(0.9 * share))?;
 
     let alpha_of = |alpha| model.shape.map(|_| alpha);
-    let mut page = page(model.name, model.source, &alphas, tallies, true);
+    let mut page = page(model.name, model.source, &alphas, tallies, Some(model));
     if model.shape.is_none() {
         page.alphas.clear();
         page.decades.iter_mut().for_each(|band| band.alpha = None);
@@ -183,8 +183,9 @@ fn alphas() -> Vec<f64> {
 }
 
 /// Bands of each α and of each decade.
-fn page(subject: &str, source: &str, alphas: &[f64], tallies: Vec<Tally>, promised: bool) -> Page {
-    let band = |range: [f64; 2], tally: &Tally| tally.band(range, promised.then(|| promise(range[0])));
+fn page(subject: &str, source: &str, alphas: &[f64], tallies: Vec<Tally>, promised: Option<&Model>) -> Page {
+    let band =
+        |range: [f64; 2], tally: &Tally| tally.band(range, promised.map(|model| promise(model, range[0])));
     let each = alphas.iter().zip(&tallies).map(|(&alpha, tally)| band([alpha; 2], tally)).collect();
     let last = DECADES.len() - 2;
     let decade = |k: usize| {

@@ -122,7 +122,7 @@ fn form(
         tallies.extend(measure(&mut subject, &[alpha], &angles, &|_| Ok(()))?);
         observer.advance(1.0 / alphas.len() as f64)?;
     }
-    Ok(page(name, source, &alphas, tallies, false))
+    Ok(page(name, source, &alphas, tallies, None))
 }
 
 /// D·V in f64 of the directions as f32 has them, by the components of h: no form can know better.

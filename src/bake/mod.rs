@@ -231,10 +231,10 @@ impl Path<'_> {
             return (plan.rule == Rule::Warped).then_some(plan.tolerance);
         }
         Some(match self {
-            Self::Device(..) => VALUE_F32,
+            Self::Device(..) => plan.value_f32(),
             Self::Cpu(Precision::F32) => STORED_F32,
-            // sin θi − sin θe, where both graze: their half sum is rounded near π/2.
-            Self::Cpu(Precision::F64) => 1e-8,
+            // sin θi − sin θe, where both graze: their half sum is rounded near π/2; and what values make of it.
+            Self::Cpu(Precision::F64) => 1e-8 * plan.value_f32() / VALUE_F32,
         })
     }
 

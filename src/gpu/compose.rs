@@ -80,7 +80,9 @@ pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize, precision
             match kernel {
                 Kernel::Slopes => add(&slopes.coarse.part),
                 Kernel::FineSlopes => add(&slopes.fine.part),
-                Kernel::Ndf | Kernel::Vndf | Kernel::Random => add(&slopes.sampling.part),
+                Kernel::Ndf | Kernel::Vndf | Kernel::Random => {
+                    slopes.sampling.iter().for_each(|sampling| add(&sampling.part));
+                }
                 _ => {}
             }
         }

@@ -9,7 +9,7 @@ use super::masking::{
     Masking, none::Unmasked, schlick_ggx::SchlickGgx, schlick_ggx_direct::SchlickGgxDirect,
     smith_correlated::SmithCorrelated, smith_separable::SmithSeparable,
 };
-use super::ndf::{Map, Ndf, ggx::Ggx};
+use super::ndf::{Map, Ndf, beckmann::Beckmann, ggx::Ggx};
 use super::{Integral, Model, Part, Sampling, Shape, SlopeCounts, SlopeMap, Slopes, Term, mirror, part};
 use crate::error::{Error, Result};
 use crate::pair::{Azimuth, Half, Pair};
@@ -57,7 +57,7 @@ macro_rules! parts {
 }
 
 parts! {
-    ndfs: Ggx;
+    ndfs: Ggx, Beckmann;
     maskings: SmithCorrelated, SmithSeparable, SchlickGgx, SchlickGgxDirect, Unmasked;
     fresnels: Schlick, Constant;
 }
@@ -67,6 +67,13 @@ pub(super) static GGX: Model = Model {
     summary: "GGX microfacets, height-correlated Smith, Schlick: f = F0·A + F90·B",
     source: "Walter et al. 2007, eq. 20 and 33; Heitz 2014, eq. 99; Schlick 1994, eq. 15",
     ..Made::<Ggx, SmithCorrelated, Schlick>::MODEL
+};
+
+/// Beckmann with the defaults.
+pub(super) static BECKMANN: Model = Model {
+    summary: "Beckmann microfacets, height-correlated Smith, Schlick: f = F0·A + F90·B",
+    source: "Walter et al. 2007, eq. 20 and 25; Heitz 2014, eq. 99; Schlick 1994, eq. 15",
+    ..Made::<Beckmann, SmithCorrelated, Schlick>::MODEL
 };
 
 impl Model {
@@ -156,6 +163,7 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
             Some(why) => Integral::Unbounded(why),
             None => Integral::Slopes(&Self::SLOPES),
         },
+        value_f32: N::VALUE_F32,
         lobe: Self::lobe,
         reference: Some(&Self::REFERENCE),
     };
@@ -180,7 +188,10 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         },
         counts: Self::counts,
         mirror_limit: |mu_e, s| F::fresnel(mu_e, 1.0 - mu_e, s).map(|f| f * M::mirror(mu_e)),
-        sampling: Sampling { part: N::SAMPLES, ndf: N::by_ndf::<M, F>, vndf: N::by_vndf::<M, F> },
+        sampling: match N::SAMPLES {
+            Some(part) => Some(Sampling { part, ndf: N::by_ndf::<M, F>, vndf: N::by_vndf::<M, F> }),
+            None => None,
+        },
     };
 
     /// The NDF's error model is for correlated Smith.
@@ -217,17 +228,19 @@ mod tests {
     /// Names are keys of pipelines, words of recipes and parts of file names.
     #[test]
     fn every_combination_has_a_name_of_its_own() {
-        assert_eq!(MICROFACETS.len(), MASKINGS.len() * FRESNELS.len());
+        let defaults = [&GGX, &BECKMANN];
+        assert_eq!(MICROFACETS.len(), defaults.len() * MASKINGS.len() * FRESNELS.len());
         let names: Vec<_> = models::all().map(|model| model.name).collect();
         for (k, name) in names.iter().enumerate() {
             assert!(!names[..k].contains(name), "{name}");
             assert_eq!(models::find(name).unwrap().name, *name);
         }
-        assert_eq!(names.len(), MODELS.len() + MICROFACETS.len() + MIRRORS.len() - 2);
+        assert_eq!(names.len(), MODELS.len() + MICROFACETS.len() + MIRRORS.len() - defaults.len() - 1);
         for model in MICROFACETS.iter() {
             let made = model.microfacet.unwrap();
             let masking = made.masking.as_ref().map(|masking| masking.name);
-            assert_eq!(GGX.with_terms(masking, Some(made.fresnel.name)).unwrap(), model);
+            let default = models::find(made.ndf.name).unwrap();
+            assert_eq!(default.with_terms(masking, Some(made.fresnel.name)).unwrap(), model);
         }
         for model in MIRRORS.iter() {
             let fresnel = model.microfacet.unwrap().fresnel.name;

@@ -5,6 +5,7 @@
 
 use super::fresnel::{Fresnel, schlick::Schlick};
 use super::{Component, Integral, Microfacet, Model, Part, Term, part};
+use crate::plan::VALUE_F32;
 use crate::reference;
 use std::marker::PhantomData;
 
@@ -37,6 +38,7 @@ impl<F: Fresnel> Made<F> {
         derive: F::derive,
         rho_bound: 1.0,
         parts: &Self::PARTS,
+        value_f32: VALUE_F32,
         integral: Integral::Delta(|mu, s| F::fresnel(mu, 1.0 - mu, s)),
         lobe: |p, a, s| F::fresnel(p.mu_i, 1.0 - p.mu_i, s).map(|f| f * p.bin * a.bin),
         reference: Some(&Self::REFERENCE),

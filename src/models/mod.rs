@@ -45,6 +45,8 @@ pub struct Model {
     pub parts: &'static [Part],
     /// How its hemispherical integrals are done.
     pub integral: Integral,
+    /// The relative error of its values in f32, for each value above 1e-30 sr⁻¹.
+    pub value_f32: f64,
     /// (A, B) in f64, in the shader's own formulas: the evaluation of the CPU path. Of a delta, its
     /// mean over a cell.
     pub(crate) lobe: fn(&Pair, &Azimuth, &Setting) -> [f64; 2],
@@ -156,8 +158,8 @@ pub struct Slopes {
     pub(crate) counts: fn(mu: f64, &Setting, tolerance: f64) -> [SlopeCounts; 2],
     /// What α → 0 tends to.
     pub(crate) mirror_limit: fn(mu_e: f64, &Setting) -> [f64; 2],
-    /// What peers do in place of all that.
-    pub(crate) sampling: Sampling,
+    /// What peers do in place of all that, if they can.
+    pub(crate) sampling: Option<Sampling>,
 }
 
 /// How much work one side of a texel is.
@@ -198,8 +200,13 @@ pub const ALPHA_MIN_INTEGRAL: f64 = 1e-12;
 
 /// The models by the names that recipes begin from; [`MICROFACETS`] and [`MIRRORS`] have the siblings of those
 /// that are made of terms.
-pub static MODELS: [&Model; 4] =
-    [&diffuse::lambert::MODEL, &diffuse::gltf_diffuse::MODEL, &microfacet::GGX, &mirror::MODEL];
+pub static MODELS: [&Model; 5] = [
+    &diffuse::lambert::MODEL,
+    &diffuse::gltf_diffuse::MODEL,
+    &microfacet::GGX,
+    &microfacet::BECKMANN,
+    &mirror::MODEL,
+];
 
 /// The finest tolerance that the tables of node counts know.
 pub(crate) const FINEST: f64 = 1e-10;
@@ -315,6 +322,11 @@ impl Model {
     /// The model's own measure of a roughness; 0 where it takes none.
     pub fn measure(&self, roughness: f64) -> f64 {
         self.shape.map_or(0.0, |shape| shape.measure(roughness))
+    }
+
+    /// Whether the rules that sample can do its integrals.
+    pub fn has_samplers(&self) -> bool {
+        matches!(self.integral, Integral::Slopes(slopes) if slopes.sampling.is_some())
     }
 
     /// Whether a lobe of this roughness is a delta, as far as values go.

@@ -239,7 +239,7 @@ impl Subject for Sum<'_> {
             reciprocity: 1e-6,
             isotropy: 1e-6,
             bilateral: 0.0,
-            agreement: VALUE_F32,
+            agreement: self.last.1.iter().map(|lobe| lobe.model.value_f32).fold(VALUE_F32, f64::max),
             energy: 2.0 * INTEGRAL_F32 * self.last.1.len() as f64,
         }
     }

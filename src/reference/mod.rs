@@ -36,7 +36,7 @@ pub use microfacet::GGX;
 pub(crate) use microfacet::Microfacet;
 pub use mirror::MIRROR;
 pub(crate) use mirror::Mirror;
-pub(crate) use ndf::{Ndf, ggx::Ggx};
+pub(crate) use ndf::{Ndf, beckmann::Beckmann, ggx::Ggx};
 
 /// The f64 reference of a model.
 ///

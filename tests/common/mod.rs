@@ -6,7 +6,7 @@ use gonio::bake::{Evaluator, Stages, Unobserved};
 use gonio::check::Check;
 use gonio::gpu::{DeviceChoice, INSTALL};
 use gonio::models::{self, Model};
-use gonio::plan::{INTEGRAL_F32, Precision, TablePlan, VALUE_F32};
+use gonio::plan::{INTEGRAL_F32, Precision, STORED_F32, TablePlan, VALUE_F32};
 use gonio::quantity::Quantity;
 use gonio::table::Table;
 use std::sync::OnceLock;
@@ -57,7 +57,7 @@ pub fn basis(
     let swept = model.shape.map(|_| listed(Variable::Roughness, roughness));
     let axes = swept.into_iter().chain(axes).collect();
     let plan = TablePlan::basis("test", quantity, model, None, axes).unwrap();
-    let exact = [INTEGRAL_F32, VALUE_F32]
+    let exact = [INTEGRAL_F32, model.value_f32]
         .into_iter()
         .find(|&t| plan.clone().with_tolerance(t).precision() == Precision::F32);
     plan.with_tolerance(exact.unwrap())
@@ -70,6 +70,13 @@ pub fn bake(evaluator: &Evaluator, plan: &TablePlan, check: Check) -> Table {
 /// A reproducible sequence in [0, 1): the additive recurrence of the golden section.
 pub fn golden(n: usize, seed: f64) -> Vec<f64> {
     (0..n).map(|k| (seed + k as f64 * 0.618_033_988_749_894_9).fract()).collect()
+}
+
+/// The relative errors of a model's values: on a device, and in f64 as stored in f32. What the reference and the
+/// CPU path round differently where both directions graze, 1e-8 each, is as much more as a model's values are
+/// more sensitive than most.
+pub fn value_budgets(model: &Model) -> [f64; 2] {
+    [model.value_f32, STORED_F32 + 2e-8 * model.value_f32 / VALUE_F32]
 }
 
 /// The extremes of θ, rad.

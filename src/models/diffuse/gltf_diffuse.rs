@@ -2,6 +2,7 @@
 
 use crate::models::{Component, Integral, Model, decade, fresnel::schlick, part};
 use crate::pair::Half;
+use crate::plan::VALUE_F32;
 use crate::reference;
 use std::f64::consts::FRAC_1_PI;
 
@@ -16,6 +17,7 @@ pub(crate) static MODEL: Model = Model {
     derive: |_| {},
     rho_bound: 1.0,
     parts: &[schlick::PART, part!("diffuse/gltf_diffuse")],
+    value_f32: VALUE_F32,
     integral: Integral::Smooth(nodes),
     lobe: |p, a, _| {
         let h = Half::new(p, a);

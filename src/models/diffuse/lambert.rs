@@ -1,6 +1,7 @@
 //! Lambert 1760. Twin of `shaders/diffuse/lambert.wgsl`.
 
 use crate::models::{Component, Integral, Model, part};
+use crate::plan::VALUE_F32;
 use crate::reference;
 use std::f64::consts::FRAC_1_PI;
 
@@ -15,6 +16,7 @@ pub(crate) static MODEL: Model = Model {
     derive: |_| {},
     rho_bound: 1.0,
     parts: &[part!("diffuse/lambert")],
+    value_f32: VALUE_F32,
     integral: Integral::Smooth(|_| [8, 1]),
     lobe: |_, _, _| [FRAC_1_PI, 0.0],
     reference: Some(reference::LAMBERT),

@@ -21,7 +21,7 @@ impl Ndf for Ggx {
     const REFERENCE: &'static dyn reference::Ndf = &reference::Ggx;
     const COARSE: Part = ggx_coarse::PART;
     const FINE: Part = ggx_fine::PART;
-    const SAMPLES: Part = ggx_samples::PART;
+    const SAMPLES: Option<Part> = Some(ggx_samples::PART);
 
     fn ndf(h: &Half, hz2: f64, &Setting { alpha, .. }: &Setting) -> f64 {
         let q = alpha * h.h2 / (alpha * alpha * hz2 + h.ht2);

@@ -1,5 +1,6 @@
 //! Distributions of microfacet normals.
 
+pub(crate) mod beckmann;
 pub(crate) mod ggx;
 pub(crate) mod ggx_coarse;
 pub(crate) mod ggx_fine;
@@ -21,10 +22,13 @@ pub(crate) trait Ndf {
 
     /// Adds what its shader takes beside the parameters, or in place of them.
     fn derive(_parameters: &mut Parameters) {}
-    /// The shaders of its maps, and of its samplers.
+    /// The shaders of its maps.
     const COARSE: Part;
     const FINE: Part;
-    const SAMPLES: Part;
+    /// Its samplers, if it has them.
+    const SAMPLES: Option<Part> = None;
+    /// The relative error of its values in f32.
+    const VALUE_F32: f64 = crate::plan::VALUE_F32;
 
     /// D(ωm), sr⁻¹.
     fn ndf(h: &Half, hz2: f64, s: &Setting) -> f64;
@@ -44,9 +48,13 @@ pub(crate) trait Ndf {
     /// What a texel takes to meet a tolerance, where cos φ > 0 and where it is < 0.
     fn counts(mu: f64, s: &Setting, tolerance: f64) -> [SlopeCounts; 2];
 
-    /// f μi / p for a draw of D cos θm, and for one of the normals that ωe sees.
-    fn by_ndf<M: Masking, F: Fresnel>(draw: [f64; 2], mu_e: f64, s: &Setting) -> [f64; 2];
-    fn by_vndf<M: Masking, F: Fresnel>(draw: [f64; 2], mu_e: f64, s: &Setting) -> [f64; 2];
+    /// f μi / p for a draw of D cos θm, and for one of the normals that ωe sees: of one that has samplers.
+    fn by_ndf<M: Masking, F: Fresnel>(_draw: [f64; 2], _mu_e: f64, _: &Setting) -> [f64; 2] {
+        [f64::NAN; 2]
+    }
+    fn by_vndf<M: Masking, F: Fresnel>(_draw: [f64; 2], _mu_e: f64, _: &Setting) -> [f64; 2] {
+        [f64::NAN; 2]
+    }
 }
 
 /// A map's tan θm = p/m at r, and `weight` = w dv/dr / m, where D cos θm dωm = w dv dφ / 2π.

@@ -1,5 +1,6 @@
 //! Distributions of microfacet normals.
 
+pub(super) mod beckmann;
 pub(super) mod ggx;
 
 use crate::setting::Setting;

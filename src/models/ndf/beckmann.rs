@@ -1,0 +1,78 @@
+//! Beckmann: D = exp(−tan²θm/α²) / (π α² cos⁴θm) (Beckmann & Spizzichino 1963; Walter et al. 2007, eq. 25).
+//! Twin of `shaders/ndf/beckmann.wgsl` and its maps.
+//!
+//! α is the root mean square slope times √2, in (0, 1]; α → 0 is the mirror. Its tail ends where GGX's goes on:
+//! highlights have an edge. It keeps energy, reciprocity and isotropy with every masking but none. Values: D is an
+//! exponential, and what rounds its exponent grows with it, up to [`BECKMANN_F32`].
+
+use super::{Map, Ndf};
+use crate::models::{Part, SlopeCounts, Term, decade, part};
+use crate::pair::Half;
+use crate::reference;
+use crate::setting::Setting;
+use libm::erf;
+use std::f64::consts::{FRAC_1_PI, PI};
+
+pub(crate) struct Beckmann;
+
+/// The relative error of its values in f32, in units of 2⁻²⁴: the 40 of every lobe, and of the exponent
+/// x = tan²θm/α² five roundings, x ≤ 128 where f is above 1e-30 sr⁻¹.
+const BECKMANN_F32: f64 = (40.0 + 5.0 * 128.0) / (1 << 24) as f64;
+
+impl Ndf for Beckmann {
+    const TERM: Term = Term {
+        name: "beckmann",
+        summary: "Beckmann microfacets",
+        source: "Walter et al. 2007, eq. 20 and 25",
+        part: part!("ndf/beckmann", "elementary"),
+    };
+    const REFERENCE: &'static dyn reference::Ndf = &reference::Beckmann;
+    const VALUE_F32: f64 = BECKMANN_F32;
+    const COARSE: Part = part!("ndf/beckmann_coarse");
+    const FINE: Part = part!("ndf/beckmann_fine");
+
+    fn ndf(h: &Half, hz2: f64, &Setting { alpha, .. }: &Setting) -> f64 {
+        let q = (-0.5 * h.ht2 / (alpha * alpha * hz2)).exp() * (h.h2 / (alpha * hz2));
+        q * q * FRAC_1_PI
+    }
+
+    /// (1 + 2Λ) μ = μ erf a + α s e^(−a²)/√π, a = μ / (α s)
+    fn smith_root(mu: f64, &Setting { alpha, .. }: &Setting) -> f64 {
+        let scale = alpha * ((1.0 - mu) * (1.0 + mu)).sqrt();
+        let a = mu / scale;
+        mu * erf(a) + scale * (-a * a).exp() / PI.sqrt()
+    }
+
+    fn smith_root_at(x: f64, y: f64, mu_e: f64, s: &Setting) -> f64 {
+        y * Self::smith_root((mu_e * x / y).clamp(0.0, 1.0), s)
+    }
+
+    fn coarse_end(t_max: f64, &Setting { alpha, .. }: &Setting) -> f64 {
+        (t_max / alpha).min(4.3)
+    }
+
+    fn coarse_map(r: f64, s: &Setting) -> Map {
+        map(r, s)
+    }
+
+    fn fine_end(t_max: f64, &Setting { alpha, .. }: &Setting) -> f64 {
+        (t_max / alpha).min(5.5)
+    }
+
+    fn fine_map(r: f64, s: &Setting) -> Map {
+        map(r, s)
+    }
+
+    /// The same for all texels, worst over α ∈ [1e-12, 1] and μ ∈ [2⁻²⁴, 1]: see the tests of
+    /// [`microfacet`](crate::models::microfacet).
+    fn counts(_mu: f64, _: &Setting, tolerance: f64) -> [SlopeCounts; 2] {
+        const COUNTS: [[usize; 2]; 10] =
+            [[4, 5], [6, 7], [9, 10], [14, 13], [20, 17], [32, 24], [54, 40], [68, 50], [84, 62], [100, 74]];
+        let [azimuths, nodes] = COUNTS[decade(tolerance)];
+        [SlopeCounts { azimuths, nodes }; 2]
+    }
+}
+
+fn map(r: f64, &Setting { alpha, .. }: &Setting) -> Map {
+    Map { p: alpha * r, m: 1.0, weight: 2.0 * r * (-r * r).exp() }
+}
