@@ -292,12 +292,12 @@ impl TablePlan {
                 ));
             }
         }
-        if let Some(samples) = self.rule.samples() {
-            if samples == 0 || samples > MAX_SAMPLES || samples > CHUNK && samples % CHUNK != 0 {
-                return Err(format!(
-                    "{samples} samples; give 1 to {CHUNK}, or a multiple of it up to {MAX_SAMPLES}"
-                ));
-            }
+        if let Some(samples) = self.rule.samples()
+            && (samples == 0 || samples > MAX_SAMPLES || samples > CHUNK && samples % CHUNK != 0)
+        {
+            return Err(format!(
+                "{samples} samples; give 1 to {CHUNK}, or a multiple of it up to {MAX_SAMPLES}"
+            ));
         }
         for Lobe { model, .. } in &self.lobes {
             let fits = match model.integral {

@@ -143,3 +143,47 @@ fn a_shader_with_loops_is_told_of() {
         None => assert!(notes.is_empty(), "{notes:?}"),
     }
 }
+
+#[cfg(feature = "cli")]
+mod command {
+    use super::*;
+    use serde_json::{Value, json};
+    use std::process::{Command, Output};
+
+    fn gonio(arguments: &[&str]) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_gonio")).args(arguments).output().unwrap()
+    }
+
+    /// `gonio devices` shows the canary of each, in JSON and for people.
+    #[test]
+    fn devices_says_what_a_driver_does() {
+        let found: Value = serde_json::from_slice(&gonio(&["devices", "--json"]).stdout).unwrap();
+        assert_eq!(found[0]["canary"], json!(canary()));
+        assert!(found.as_array().unwrap().last().unwrap().get("canary").is_none(), "the CPU has none");
+        let text = String::from_utf8(gonio(&["devices"]).stdout).unwrap();
+        let loops = match canary().loop_turns {
+            Some(turns) => format!("stops loops after {turns} turns"),
+            None => format!("runs loops of {ASKED_TURNS} turns"),
+        };
+        assert!(text.contains(&loops) && text.contains("a·b + c"), "{text}");
+    }
+
+    /// What a driver would cut short is refused as the device's fault, and the CPU path bakes it.
+    #[test]
+    fn a_bake_beyond_the_driver_fails_and_says_why() {
+        let dir = tempfile::tempdir().unwrap();
+        let recipe = dir.path().join("fine.toml");
+        let table =
+            "[[tables]]\nquantity = 'rho_dh'\nmodel = 'lambert'\naxes = { theta_i = 3 }\ngrid = [65536, 2]\n";
+        std::fs::write(&recipe, table).unwrap();
+        let (recipe, out) = (recipe.to_str().unwrap(), dir.path().join("out"));
+        let run = |device| gonio(&["bake", recipe, "--out", out.to_str().unwrap(), "--device", device]);
+        let baked = run("auto");
+        let said = String::from_utf8_lossy(&baked.stderr);
+        match canary().loop_turns {
+            Some(_) => assert!(baked.status.code() == Some(3) && said.contains("69633 turns"), "{said}"),
+            None => assert_eq!(baked.status.code(), Some(0), "{said}"),
+        }
+        assert_eq!(run("cpu").status.code(), Some(0));
+    }
+}
