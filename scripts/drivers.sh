@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Runs the tests on each software Vulkan driver, and compares what fails with tests/drivers.txt: a failure that is
-# not listed there fails, and so does a listed one that passes. Arguments go to `cargo test`.
+# not listed there fails, and so does a listed one that passes. Says what each driver does (`gonio devices`).
+# Arguments go to `cargo test`.
 #
 # lavapipe is the system's. The others are unpacked beside it, from Debian's packages, and nothing is installed.
 set -euo pipefail
@@ -70,6 +71,7 @@ cargo build --release --quiet
 gonio="${CARGO_TARGET_DIR:-target}/release/gonio"
 row='%-19s %6s %7s %9s   %s\n'
 table=$(printf "$row" driver passed failed expected "GGX α≥1e-4    to 1e-6       unequal   adapter")
+canaries=
 wrong=()
 for driver in lavapipe lavapipe-backports swiftshader; do
     export VK_DRIVER_FILES="$cache/icd/$driver.json"
@@ -96,11 +98,14 @@ for driver in lavapipe lavapipe-backports swiftshader; do
     "$gonio" atlas --model ggx --out "$cache/$driver.atlas" >/dev/null 2>&1 || wrong+=("$driver: gonio atlas fails")
     passed=$(grep -c ' ok$' "$cache/$driver.results" || true)
     adapter=$("$gonio" devices 2>/dev/null | sed -n '1{s/ (auto)//;h};2{s/^.*, //;H;x;s/\n/, /p}')
+    # What its driver does: what follows the second line, as long as it is indented.
+    canary=$("$gonio" devices 2>/dev/null | awk 'NR > 2 { if (!/^    /) exit; print }')
+    canaries+=$'\n\n'"$driver"$'\n'"$canary"
     table+=$'\n'$(printf "$row" "$driver" "$passed" "$(wc -l <"$cache/$driver.failed")" \
         "$(wc -l <"$cache/$driver.expected")" "$(figures "$cache/$driver.atlas/atlas.csv")   $adapter")
 done
 
-printf '\n%s\n' "$table"
+printf '\n%s%s\n' "$table" "$canaries"
 if [ ${#wrong[@]} -gt 0 ]; then
     printf '\nNot as expected (%s):\n' "$expected"
     printf '  %s\n' "${wrong[@]}"

@@ -347,25 +347,21 @@ impl TablePlan {
 
     /// Why the rule does not fit the quantity and the lobes, if it does not.
     fn check_rule(&self) -> Result<(), String> {
-        let mean = self.quantity.evaluation == Evaluation::Hemispherical;
         let name = self.rule.name();
         if let Some([theta, phi]) = self.rule.nodes() {
-            let finest = if matches!(self.rule, Rule::Gauss { .. }) { MAX_GAUSS } else { MAX_GRID };
-            let most = if mean { MAX_GRID_RHO_HH } else { finest };
-            let fits = (1..=most).contains(&theta) && (2..=finest).contains(&phi);
-            if !fits || phi % 2 == 1 {
+            let most = if matches!(self.rule, Rule::Gauss { .. }) { MAX_GAUSS } else { MAX_GRID };
+            if !(1..=most).contains(&theta) || !(2..=most).contains(&phi) || phi % 2 == 1 {
                 return Err(format!(
-                    "a {name} of {theta} × {phi}; give θ from 1 to {most}, and φ from 2 to {finest}, even"
+                    "a {name} of {theta} × {phi}; give θ from 1 to {most}, and φ from 2 to {most}, even"
                 ));
             }
         }
-        if let Some(samples) = self.rule.samples() {
-            let most = if mean { MAX_SAMPLES_RHO_HH } else { MAX_SAMPLES };
-            if samples == 0 || samples > most || samples > CHUNK && samples % CHUNK != 0 {
-                return Err(format!(
-                    "{samples} samples; give 1 to {CHUNK}, or a multiple of it up to {most}"
-                ));
-            }
+        if let Some(samples) = self.rule.samples()
+            && (samples == 0 || samples > MAX_SAMPLES || samples > CHUNK && samples % CHUNK != 0)
+        {
+            return Err(format!(
+                "{samples} samples; give 1 to {CHUNK}, or a multiple of it up to {MAX_SAMPLES}"
+            ));
         }
         for Lobe { model, .. } in &self.lobes {
             let fits = match model.integral {
@@ -513,15 +509,13 @@ const MAX_STREAMED: usize = 1 << 33;
 /// The most factors of a table: 32 bytes each in the 128 MiB that every device binds.
 const MAX_FACTORS: usize = 1 << 22;
 
-/// The finest grid rule: one invocation's loop must stay below what every driver runs.
-pub(crate) const MAX_GRID: usize = 16_384;
-/// The finest θ of a grid under the mean over directions, which one invocation sums as well.
-const MAX_GRID_RHO_HH: usize = 512;
+/// The finest grid rule: with more nodes in θ no table is left whose factors fit. What a device's driver runs of it
+/// is for the device to say.
+pub(crate) const MAX_GRID: usize = 1 << 16;
 /// The finest Gauss–Legendre rule: beyond it the host takes seconds to find the nodes.
 pub(crate) const MAX_GAUSS: usize = 4096;
-/// The most samples: what one invocation sums in turn, as chunks.
+/// The most samples: their draws take 32 MiB.
 pub(crate) const MAX_SAMPLES: usize = 1 << 22;
-const MAX_SAMPLES_RHO_HH: usize = 1 << 19;
 
 impl fmt::Display for TablePlan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

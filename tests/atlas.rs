@@ -6,10 +6,7 @@ mod common;
 use common::*;
 use gonio::atlas::{self, Page, RECIPROCITY};
 use gonio::bake::{Evaluator, Unobserved};
-use gonio::gpu::{UserFunction, UserShader};
 use gonio::models::MODELS;
-use gonio::points::Angles;
-use gonio::promises::{Parameter, Subject, Symmetry};
 
 /// A quarter of the default: enough for the tail to be within a tenth of that of 10⁸ values.
 const BUDGET: u64 = 1_000_000;
@@ -65,30 +62,14 @@ fn the_cpu_path_rounds_once() {
 /// in G2's sum and in h's, which D squares twice: 5 · 2⁻²⁴ = 3e-7.
 #[test]
 fn ggx_is_reciprocal_bit_by_bit_where_nothing_is_contracted() {
-    let contracts = contracts();
+    let Evaluator::Device(opened) = device() else { unreachable!("common::device asserts it") };
+    let contracts = opened.canary().unwrap().contracts;
     for page in pages(device()) {
         for band in &page.decades {
             assert!(band.reciprocity <= RECIPROCITY, "{}: {:e}", page.subject, band.reciprocity);
             assert!(contracts || band.unequal == 0, "{}: {} values change", page.subject, band.unequal);
         }
     }
-}
-
-/// x = 1 + 2⁻¹² has x² = 1 + 2⁻¹¹ + 2⁻²⁴, a tie that rounds to 1 + 2⁻¹¹: x·x − (1 + 2⁻¹¹) is 0, or 2⁻²⁴ where
-/// it is contracted.
-fn contracts() -> bool {
-    let source = "fn f(wi: vec3f, wo: vec3f, x: f32, y: f32) -> f32 { return x * x - y; }";
-    let function = UserFunction::parse("canary.wgsl", source, "f").unwrap();
-    let parameters = ["x", "y"].map(|name| Parameter::new(name, 0.0, 2.0).unwrap()).to_vec();
-    let symmetry = Symmetry { isotropic: true, bilateral: true };
-    let Evaluator::Device(device) = device() else { unreachable!("common::device asserts it") };
-    let mut shader = UserShader::new(device, function, parameters, false, symmetry).unwrap();
-    let (mut values, x) = (Vec::new(), 2f64.powi(-12));
-    let normal = Angles { theta_i: 0.0, phi_i: 0.0, theta_e: 0.0, phi_e: 0.0 };
-    shader.evaluate(&[1.0 + x, 1.0 + 2.0 * x], &[normal], &mut values).unwrap();
-    println!("x² − x² is {:e}", values[0]);
-    assert!(values[0] == 0.0 || f64::from(values[0]) == x * x, "{values:?}");
-    values[0] != 0.0
 }
 
 /// What the field's forms lose inside a lobe, in orders of magnitude. 1 − NoH² has lost α² to 2⁻²⁴ where

@@ -1,5 +1,6 @@
 // Hemispherical integrals over (θe, δφ), whatever the nodes: one invocation a (roughness, θi, θe),
 // which sums the azimuths in blocks, so that rounding grows with the root of their number.
+// Some drivers stop long loops: `src/gpu/loops.rs` counts these before they are run.
 
 @group(0) @binding(2) var<storage, read> alphas: array<real>;
 @group(0) @binding(3) var<storage, read> pairs: array<Pair>;

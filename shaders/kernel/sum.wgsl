@@ -1,5 +1,6 @@
 // The outer sum of an integral: each texel is a weighted sum of job.nodes raw results, in blocks,
 // turned into channels.
+// Some drivers stop long loops: `src/gpu/loops.rs` counts these before they are run.
 
 @group(0) @binding(2) var<storage, read> outer: array<real>;
 @group(0) @binding(3) var<storage, read> raw: array<real2>;

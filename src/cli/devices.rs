@@ -2,8 +2,8 @@
 
 use super::{HEADING, print, print_json};
 use crate::error::Result;
-use crate::gpu::{self, Adapter};
-use serde_json::json;
+use crate::gpu::{self, ASKED_TURNS, Adapter, Canary};
+use serde_json::{Value, json};
 
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
@@ -14,6 +14,9 @@ pub struct Args {
 }
 
 const AFTER_HELP: &str = "\
+Each device is opened and runs one small shader, which finds what its driver does to others: stop loops, round
+a·b + c once, rewrite sums, drop denormals. What follows for tables is said beside it.
+
 Examples:
   gonio devices
   gonio bake scene.gltf --out tables --device llvmpipe
@@ -22,28 +25,72 @@ Exit codes: 0 success, 2 the list cannot be written";
 
 pub fn run(args: &Args) -> Result<()> {
     let adapters = gpu::adapters();
+    // What opens is what `auto` takes the first of.
+    let opened = adapters.iter().map(Adapter::open);
+    let canaries: Vec<_> = opened.map(|device| device.map(|device| device.canary())).collect();
     if args.json {
-        let entry = |a: &Adapter| {
-            json!({
-                "name": a.info.name,
-                "kind": a.kind(),
-                "backend": a.info.backend.to_string(),
-                "driver": a.driver(),
-            })
-        };
-        let mut devices: Vec<_> = adapters.iter().map(entry).collect();
+        let mut devices: Vec<_> = adapters.iter().zip(&canaries).map(|(a, c)| entry(a, c)).collect();
         devices.push(json!({ "name": "cpu", "kind": "CPU", "backend": "none", "driver": "f64" }));
         return print_json(&devices);
     }
-    for (k, adapter) in adapters.iter().enumerate() {
-        let mark = if k == 0 { " (auto)" } else { "" };
+    let auto = canaries.iter().position(Result::is_ok);
+    let mark = |is_auto| if is_auto { " (auto)" } else { "" };
+    for (k, (adapter, canary)) in adapters.iter().zip(&canaries).enumerate() {
         let (kind, backend, driver) = (adapter.kind(), adapter.info.backend, adapter.driver());
-        print(&format!("{HEADING}{}{HEADING:#}{mark}\n    {kind}, {backend}, {driver}", adapter.info.name))?;
+        print(&format!("{HEADING}{}{HEADING:#}{}", adapter.info.name, mark(auto == Some(k))))?;
+        print(&format!("    {kind}, {backend}, {driver}"))?;
+        match canary {
+            Ok(Ok(canary)) => {
+                print(&format!("    {}", loops(canary)))?;
+                arithmetic(canary).iter().try_for_each(|line| print(&format!("    {line}")))?;
+            }
+            Ok(Err(why)) => print(&format!("    its driver could not be asked: {why}"))?,
+            Err(why) => print(&format!("    it cannot be opened: {why}"))?,
+        }
     }
     if adapters.is_empty() {
         print(&format!("no GPU and no Vulkan driver. {}", gpu::INSTALL))?;
     }
-    let mark = if adapters.is_empty() { " (auto)" } else { "" };
-    print(&format!("{HEADING}cpu{HEADING:#}{mark}\n    the CPU path, in f64 on all cores"))?;
-    Ok(())
+    print(&format!("{HEADING}cpu{HEADING:#}{}\n    the CPU path, in f64 on all cores", mark(auto.is_none())))
+}
+
+fn entry(adapter: &Adapter, canary: &Result<Result<Canary>>) -> Value {
+    let mut entry = json!({
+        "name": adapter.info.name,
+        "kind": adapter.kind(),
+        "backend": adapter.info.backend.to_string(),
+        "driver": adapter.driver(),
+    });
+    match canary {
+        Ok(Ok(canary)) => entry["canary"] = json!(canary),
+        Ok(Err(why)) | Err(why) => entry["error"] = json!(why.to_string()),
+    }
+    entry
+}
+
+/// What it does to loops, and what follows.
+fn loops(canary: &Canary) -> String {
+    match canary.loop_turns {
+        Some(turns) => {
+            format!("stops loops after {turns} turns, silently: tables that take more are refused")
+        }
+        None => format!("runs loops of {ASKED_TURNS} turns"),
+    }
+}
+
+/// What it does to numbers, and what follows.
+fn arithmetic(canary: &Canary) -> Vec<&'static str> {
+    let Canary { contracts, fused_fma, reassociates, flushes_denormals, tells_nan, .. } = *canary;
+    let products = match (contracts, fused_fma) {
+        (true, _) => "contracts a·b + c: last bits may change when ωi and ωe are exchanged",
+        (false, true) => "rounds a·b + c twice, fma once: exchanging ωi and ωe changes no bit",
+        (false, false) => "rounds a·b + c twice, fma too: exchanging ωi and ωe changes no bit",
+    };
+    let oddities = [
+        (reassociates, "takes (a + b) − b for a: sums are in blocks, which that cannot harm"),
+        (flushes_denormals, "takes denormals for 0: f below 1e-38 sr⁻¹ is 0"),
+        (!tells_nan, "misses NaN in x ≠ x: results are judged by their bits"),
+    ];
+    let oddities = oddities.into_iter().filter(|(has, _)| *has).map(|(_, line)| line);
+    std::iter::once(products).chain(oddities).collect()
 }

@@ -1,6 +1,7 @@
 //! Records the baking of a table on a device that the caller owns.
 
 use super::compose::{Kernel, VALUE_WINDOW, compose, validate};
+use super::loops::{self, SAFE_TURNS};
 use super::stage::{Job, Rows, Stage, Stages};
 use crate::axis::Variable;
 use crate::error::{Error, Result};
@@ -162,7 +163,7 @@ impl Baker {
     /// not submit, read back or block; the rule alone answers for the error then.
     ///
     /// # Errors
-    /// When the table does not fit one binding of the device.
+    /// As [`prepare`](Self::prepare)'s.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, table: &TablePlan) -> Result<Recorded> {
         let prepared = self.prepare(table)?;
         prepared.encode(encoder);
@@ -173,10 +174,10 @@ impl Baker {
     /// again into the same buffer.
     ///
     /// # Errors
-    /// When the table does not fit one binding of the device.
+    /// When the table does not fit one binding of the device, or takes loops that not every driver runs.
     pub fn prepare(&self, table: &TablePlan) -> Result<Prepared> {
         let layout = Layout::new(table, Precision::F32);
-        let stages = self.stages(table, Precision::F32)?;
+        let stages = self.stages(table, Precision::F32, || Ok(SAFE_TURNS))?;
         let raw = stages.iter().map(Stages::raw_bytes_per_unit).max().unwrap_or(0) * layout.units;
         let bytes = layout.bytes(layout.units).max(raw);
         let limits = self.device.limits();
@@ -200,14 +201,19 @@ impl Baker {
         Ok(Prepared { recorded, steps: tile.steps })
     }
 
-    /// The work of every lobe of a table, uploaded.
-    pub(super) fn stages(&self, table: &TablePlan, precision: Precision) -> Result<Vec<Stages>> {
-        table
-            .lobes
-            .iter()
-            .enumerate()
-            .map(|(k, lobe)| Stages::new(self, lobe, &Work::new(table, lobe), k > 0, precision))
-            .collect()
+    /// The work of every lobe of a table, uploaded. `known_turns` of loops are known to run.
+    pub(super) fn stages(
+        &self,
+        table: &TablePlan,
+        precision: Precision,
+        known_turns: impl Fn() -> Result<u32>,
+    ) -> Result<Vec<Stages>> {
+        let stages = |(k, lobe)| {
+            let work = Work::new(table, lobe);
+            loops::check(table, &work, &known_turns)?;
+            Stages::new(self, lobe, &work, k > 0, precision)
+        };
+        table.lobes.iter().enumerate().map(stages).collect()
     }
 
     /// The steps of one tile, and the buffer that they fill.

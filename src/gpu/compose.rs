@@ -44,6 +44,8 @@ pub enum Kernel {
     Fill,
     /// Nothing but arithmetic.
     MultiplyAdd,
+    /// What the driver does.
+    Canary,
 }
 
 /// Room for the rules of Gauss–Legendre that tables of coarse tolerances take, which a test of the models holds: 64 KiB in
@@ -123,12 +125,13 @@ impl Kernel {
             (Self::Pack, _) => &[part!("kernel/pack")],
             (Self::Fill, _) => &[part!("probe/fill")],
             (Self::MultiplyAdd, _) => &[part!("probe/multiply_add")],
+            (Self::Canary, _) => &[part!("probe/canary")],
         }
     }
 
     /// Whether it knows no job, model or precision: its file is all of it.
     fn is_plain(self) -> bool {
-        matches!(self, Self::Pack | Self::Fill | Self::MultiplyAdd)
+        matches!(self, Self::Pack | Self::Fill | Self::MultiplyAdd | Self::Canary)
     }
 }
 

@@ -1,10 +1,11 @@
 //! Finding a device, and saying which one was taken and why.
 
 use super::baker::Baker;
+use super::canary::Canary;
 use crate::error::{Error, Result};
 use std::fmt;
 use std::str::FromStr;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// What the user asks for.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -46,6 +47,7 @@ pub struct Device {
     #[cfg(feature = "files")]
     adapter: Adapter,
     fault: Arc<Mutex<Option<String>>>,
+    pub(super) canary: OnceLock<Canary>,
 }
 
 /// All adapters that could bake, the best first.
@@ -115,6 +117,7 @@ impl Adapter {
             #[cfg(feature = "files")]
             adapter: self.clone(),
             fault,
+            canary: OnceLock::new(),
         })
     }
 }

@@ -80,7 +80,7 @@ impl Device {
     ) -> Result<()> {
         let start = Instant::now();
         let composed = self.baker.compose_seconds();
-        let stages = self.baker.stages(table, layout.precision)?;
+        let stages = self.baker.stages(table, layout.precision, || self.known_turns())?;
         let tiles = tiles.map_or_else(|| layout.tiles(&stages), <[_]>::to_vec);
         let largest = layout.bytes(tiles.iter().map(Range::len).max().unwrap_or(0));
         let mut slots: Vec<_> = tiles.iter().take(2).map(|_| self.slot(largest)).collect();

@@ -50,7 +50,7 @@ impl Device {
     pub(crate) fn warm(&self, table: &TablePlan, precision: Precision) -> Result<Warm<'_>> {
         let prepare = || -> Result<(Layout, Vec<Tile>)> {
             let layout = Layout::new(table, precision);
-            let stages = self.baker.stages(table, precision)?;
+            let stages = self.baker.stages(table, precision, || self.known_turns())?;
             let tiles = layout.tiles(&stages).into_iter();
             let tiles = tiles.map(|units| self.baker.tile(&layout, &stages, units)).collect::<Result<_>>()?;
             Ok((layout, tiles))

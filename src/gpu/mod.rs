@@ -4,9 +4,11 @@
 //! headless bake is the same recording, split into submissions and read back.
 
 mod baker;
+mod canary;
 mod compose;
 mod device;
 mod evaluate;
+mod loops;
 mod measure;
 mod points;
 mod stage;
@@ -14,6 +16,7 @@ mod texture;
 mod user_shader;
 
 pub use baker::{Baker, Prepared, Recorded};
+pub use canary::{ASKED_TURNS, Canary};
 pub use compose::{Kernel, compose, validate};
 pub use device::{Adapter, Device, DeviceChoice, INSTALL, adapters};
 pub(crate) use measure::{Rates, Warm};

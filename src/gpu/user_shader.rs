@@ -9,7 +9,7 @@ use crate::pair::MU_MIN;
 use crate::points::Angles;
 use crate::promises::{Parameter, Subject, Symmetry};
 use naga::valid::{Capabilities, ModuleInfo, ShaderStages, ValidationFlags, Validator};
-use naga::{Function, Module, ScalarKind, TypeInner, VectorSize};
+use naga::{Block, Function, Module, ScalarKind, Statement, TypeInner, VectorSize};
 use rayon::prelude::*;
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
@@ -22,6 +22,8 @@ pub struct UserFunction {
     entry: String,
     parameters: Vec<String>,
     channels: usize,
+    /// Whether it, or what it calls, has a loop.
+    loops: bool,
     /// A group of bindings that the file leaves free.
     group: u32,
 }
@@ -55,12 +57,14 @@ impl UserFunction {
             Error::input(format!("{file} is not valid WGSL:\n{}", message.trim_end()))
         })?;
         let (parameters, channels) = signature(&module, &info, entry).map_err(|error| error.at(&file))?;
+        let named = |function: &Function| function.name.as_deref() == Some(entry);
+        let loops = module.functions.iter().any(|(_, f)| named(f) && has_loop(&module, &f.body));
         let taken =
             |group| module.global_variables.iter().any(|(_, v)| v.binding.is_some_and(|b| b.group == group));
         let group = (0..GROUPS).find(|&group| !taken(group)).ok_or_else(|| {
             Error::input(format!("{file}: all of the groups 0 to 3 have bindings; leave one for the check"))
         })?;
-        Ok(Self { file, source, entry: entry.into(), parameters, channels, group })
+        Ok(Self { file, source, entry: entry.into(), parameters, channels, loops, group })
     }
 
     /// The names of its f32 parameters, after the directions.
@@ -162,6 +166,18 @@ fn signature(module: &Module, info: &ModuleInfo, entry: &str) -> Result<(Vec<Str
     Ok((parameters, channels))
 }
 
+/// Whether a block has a loop in it, or calls a function that has.
+fn has_loop(module: &Module, block: &Block) -> bool {
+    block.iter().any(|statement| match statement {
+        Statement::Loop { .. } => true,
+        Statement::Block(block) => has_loop(module, block),
+        Statement::If { accept, reject, .. } => has_loop(module, accept) || has_loop(module, reject),
+        Statement::Switch { cases, .. } => cases.iter().any(|case| has_loop(module, &case.body)),
+        Statement::Call { function, .. } => has_loop(module, &module.functions[*function].body),
+        _ => false,
+    })
+}
+
 fn missing(module: &Module, entry: &str) -> Error {
     if module.entry_points.iter().any(|point| point.name == entry) {
         return Error::input(format!(
@@ -231,6 +247,8 @@ pub struct UserShader<'a> {
     /// Whether it has cos θi in it.
     cosine: bool,
     symmetry: Symmetry,
+    /// Turns after which the driver stops its loops, if it has any and the driver does.
+    loop_turns: Option<u32>,
     pipeline: wgpu::ComputePipeline,
     bindings: wgpu::BindGroup,
     job: wgpu::Buffer,
@@ -277,6 +295,7 @@ impl<'a> UserShader<'a> {
         let refused = |why: Error| {
             Error::input(format!("{}: the device does not take fn {}: {why}", function.file, function.entry))
         };
+        let loop_turns = if function.loops { device.canary()?.loop_turns } else { None };
         let (wgpu, _) = device.wgpu();
         let source = wgpu::ShaderSource::Wgsl(function.compose().into());
         let module =
@@ -325,6 +344,7 @@ impl<'a> UserShader<'a> {
             parameters,
             cosine,
             symmetry,
+            loop_turns,
             pipeline,
             bindings,
             job,
@@ -432,5 +452,16 @@ impl Subject for UserShader<'_> {
 
     fn rounding(&self) -> f64 {
         0.5 * f64::from(f32::EPSILON)
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let stops = |turns| {
+            format!(
+                "it has loops, and this driver stops an invocation's after {turns} turns in all, silently: where fn {} \
+                 takes more, what is checked is cut short",
+                self.function.entry
+            )
+        };
+        self.loop_turns.map(stops).into_iter().collect()
     }
 }

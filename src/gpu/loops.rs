@@ -1,0 +1,95 @@
+//! How many turns the loops of one invocation take. Some drivers stop an invocation's loops after 65,535 turns of all
+//! of them together, and say nothing: what is left of a sum is then missing from a table.
+
+use super::compose::VALUE_WINDOW;
+use crate::error::{Error, Result};
+use crate::plan::TablePlan;
+use crate::slopes::SlopeWork;
+use crate::work::{Inner, Work, WorkKind};
+
+/// Turns that every driver runs: half of what the strictest one does. Nothing need be known of a driver below.
+pub(super) const SAFE_TURNS: u32 = 32_000;
+
+/// Refuses a table whose loops may be stopped. `known` says what is known to run, and is asked only if a table takes more
+/// than [`SAFE_TURNS`].
+pub(super) fn check(table: &TablePlan, work: &Work, known: impl FnOnce() -> Result<u32>) -> Result<()> {
+    let turns = turns(work);
+    if turns <= SAFE_TURNS as usize {
+        return Ok(());
+    }
+    let known = known()?;
+    if turns <= known as usize {
+        return Ok(());
+    }
+    Err(Error::Device(format!(
+        "table \"{}\": {} takes {turns} turns of loops in one invocation, and only {known} are known to run here (see \
+         `gonio devices`); take a coarser rule or tolerance, or the CPU path",
+        table.name, table.rule
+    )))
+}
+
+/// Turns of all loops of one invocation, at most, of the kernel that takes the most. The turn that finds a loop at
+/// its end is counted too.
+fn turns(work: &Work) -> usize {
+    match &work.kind {
+        // Eight invocations share a window.
+        WorkKind::Values { .. } => VALUE_WINDOW / 8 + 1,
+        WorkKind::Integrals { inner, outer } => {
+            let inner = match inner {
+                Inner::Slopes(work) => slopes(work),
+                Inner::Product { azimuths, .. } => in_blocks(azimuths.len()),
+                // And a loop over four α.
+                Inner::Samples(work) => in_blocks(work.chunk) + 5,
+                Inner::Analytic { .. } => 0,
+            };
+            inner.max(in_blocks(outer.len()))
+        }
+    }
+}
+
+/// A sum in blocks of 32, as `product.wgsl`, `sampling.wgsl` and `sum.wgsl` have it.
+fn in_blocks(terms: usize) -> usize {
+    terms + 2 * terms.div_ceil(32) + 1
+}
+
+/// `slopes.wgsl`: for both sides, azimuths and the nodes of each. Invocations that run in step wait for the one
+/// with the most of each.
+fn slopes(work: &SlopeWork) -> usize {
+    [0, 1]
+        .map(|side| {
+            let counts = || work.tiles.iter().map(|tile| tile[side].counts);
+            let azimuths = counts().map(|counts| counts.azimuths).max().unwrap_or(0);
+            let nodes = counts().map(|counts| counts.nodes).max().unwrap_or(0);
+            azimuths * (nodes + 2) + 1
+        })
+        .iter()
+        .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::axis::{Axis, Variable};
+    use crate::models::{self, Integral};
+    use crate::quantity::{RHO_DH, RHO_HH};
+
+    /// The warped rule never comes near the limit: at no tolerance, for no model, over all α and μ.
+    #[test]
+    fn the_warped_rule_is_safe_on_every_driver() {
+        let mut most = 0;
+        for model in models::all().filter(|model| !matches!(model.integral, Integral::Unbounded(_))) {
+            for tolerance in (1..=10).map(|decade| 10f64.powi(-decade)) {
+                for quantity in [&RHO_DH, &RHO_HH] {
+                    let rough = model.has_roughness.then(|| Axis::natural(Variable::Roughness, 256).unwrap());
+                    let theta = (quantity == &RHO_DH).then(|| Axis::natural(Variable::ThetaI, 256).unwrap());
+                    let axes = rough.into_iter().chain(theta).collect();
+                    let plan = TablePlan::basis("t", quantity, model, None, axes).unwrap();
+                    let plan = plan.with_tolerance(tolerance);
+                    most = most.max(turns(&Work::new(&plan, &plan.lobes[0])));
+                }
+            }
+        }
+        println!("at most {most} turns");
+        assert!(most <= SAFE_TURNS as usize, "{most}");
+    }
+}
