@@ -90,6 +90,7 @@ pub mod reference;
 mod sampling;
 pub mod scene;
 mod slopes;
+mod spread;
 pub mod storage;
 pub mod table;
 pub mod trade;

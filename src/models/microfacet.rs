@@ -152,6 +152,7 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
             integrand: |r, azimuth, mu_e, alpha| Self::integrand(N::fine_map(r, alpha), azimuth, mu_e, alpha),
         },
         counts: Self::counts,
+        branches: N::BRANCHES,
         mirror_limit: |mu_e| F::fresnel(mu_e, 1.0 - mu_e),
         sampling: Sampling { part: N::SAMPLES, ndf: N::by_ndf::<M, F>, vndf: N::by_vndf::<M, F> },
     };

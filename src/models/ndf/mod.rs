@@ -8,7 +8,7 @@ pub(crate) mod ggx_samples;
 
 use super::fresnel::Fresnel;
 use super::masking::Masking;
-use super::{Part, SlopeCounts, Term};
+use super::{Branches, Part, SlopeCounts, Term};
 use crate::pair::Half;
 use crate::reference;
 
@@ -20,6 +20,8 @@ pub(crate) trait Ndf {
     const COARSE: Part;
     const FINE: Part;
     const SAMPLES: Part;
+    /// Where ρ(μ, α) is not analytic, if that was measured.
+    const BRANCHES: Option<Branches> = None;
 
     /// D(ωm), sr⁻¹.
     fn ndf(h: &Half, hz2: f64, alpha: f64) -> f64;
