@@ -49,14 +49,15 @@ impl Spread {
     /// Along roughness, for lobes seen at `mus`; `None` where it does not pay.
     pub fn along_roughness(alphas: &[f64], mus: &[f64], branches: Branches, tolerance: f64) -> Option<Self> {
         let roughness: Vec<_> = alphas.iter().map(|alpha| alpha.sqrt()).collect();
-        let points = thinned(mus).map(|mu| [FRAC_1_SQRT_2 * mu.sqrt(); 2]).collect::<Vec<_>>();
+        let points =
+            thinned(mus).map(|mu| [FRAC_1_SQRT_2 * mu.sqrt(); 2]).chain([[0.0; 2]]).collect::<Vec<_>>();
         let spread = Self::new(&roughness, &points, branches.strength, tolerance)?;
         Some(Self { sources: spread.sources.iter().map(|r| r * r).collect(), ..spread })
     }
 
     /// Along μ, for lobes of `alphas`; `None` where it does not pay.
     pub fn along_mu(mus: &[f64], alphas: &[f64], branches: Branches, tolerance: f64) -> Option<Self> {
-        let points = thinned(alphas).map(|alpha| [0.0, alpha]).collect::<Vec<_>>();
+        let points = thinned(alphas).map(|alpha| [0.0, alpha]).chain([[0.0; 2]]).collect::<Vec<_>>();
         Self::new(mus, &points, branches.strength, tolerance)
     }
 
@@ -195,4 +196,150 @@ fn thinned(values: &[f64]) -> impl Iterator<Item = f64> {
         far
     });
     sorted.into_iter()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::models::{ALPHA_MIN_INTEGRAL, Integral, MICROFACETS, Model, Slopes};
+    use crate::pair::MU_MIN;
+    use crate::slopes::SlopeWork;
+
+    /// Roughness and μ of tables that the strength was not measured on … or was.
+    fn tables() -> Vec<(&'static str, Vec<f64>, Vec<f64>)> {
+        let centers = |n: usize| (0..n).map(|k| (k as f64 + 0.5) / n as f64).collect::<Vec<_>>();
+        let nodes = |n: usize, [a, b]: [f64; 2]| -> Vec<f64> {
+            (0..n).map(|k| a + (b - a) * k as f64 / (n - 1) as f64).collect()
+        };
+        let squared = |values: Vec<f64>| values.into_iter().map(|u| u * u).collect::<Vec<_>>();
+        let cosines = |n: usize| -> Vec<f64> {
+            nodes(n, [0.0, 0.5 * PI]).into_iter().map(|theta| theta.cos().max(MU_MIN)).collect()
+        };
+        let narrow = nodes(48, [0.23, 0.84]);
+        let listed: Vec<_> = (0..60).map(|k| 0.8f64.powi(k)).collect();
+        vec![
+            ("128 centres", centers(128), centers(128)),
+            ("64 centres", centers(64), centers(64)),
+            ("300 centres", centers(300), centers(300)),
+            ("nodes from 0, 1e-3", nodes(64, [0.0, 1.0]), nodes(64, [1e-3, 1.0])),
+            (
+                "square root",
+                squared(nodes(128, [0.0, 1.0])),
+                squared(nodes(128, [0.0, 1.0])).iter().map(|mu| mu.max(MU_MIN)).collect(),
+            ),
+            ("a scene's", narrow.clone(), nodes(40, [0.1, 0.97])),
+            ("rough", nodes(40, [0.8, 1.0]), centers(100)),
+            (
+                "smooth",
+                nodes(200, [0.0, 0.05]),
+                nodes(200, [0.0, 0.05]).iter().map(|mu| mu.max(MU_MIN)).collect(),
+            ),
+            ("angles", centers(90), cosines(91)),
+            ("listed", listed.clone(), listed),
+        ]
+    }
+
+    fn slopes(model: &Model) -> Option<&'static Slopes> {
+        match model.integral {
+            Integral::Slopes(slopes) => Some(slopes),
+            _ => None,
+        }
+    }
+
+    /// Row by row, to 1e-10.
+    fn exact(slopes: &'static Slopes, alphas: &[f64], mus: &[f64]) -> Vec<[f64; 2]> {
+        let work = SlopeWork::new(slopes, mus.to_vec(), alphas, 1e-10);
+        let map = slopes.map(work.tolerance);
+        let integral = |at: usize| {
+            let (row, column) = (at / mus.len(), at % mus.len());
+            let (alpha, mu) = (alphas[row], mus[column]);
+            if alpha < ALPHA_MIN_INTEGRAL {
+                return (slopes.mirror_limit)(mu);
+            }
+            let mut sum = [0.0; 2];
+            for (azimuths, nodes) in work.sides(row, column) {
+                for &[c, t_max, inverse, weight] in azimuths {
+                    let end = (map.end)(t_max, alpha);
+                    for node in nodes {
+                        let [a, b] = (map.integrand)(end * node.x, [c, t_max, inverse], mu, alpha);
+                        let weight = weight * end * node.weight;
+                        sum = [sum[0] + weight * a, sum[1] + weight * b];
+                    }
+                }
+            }
+            sum
+        };
+        (0..alphas.len() * mus.len()).into_par_iter().map(integral).collect()
+    }
+
+    /// The largest error of some texels of a table, and how many sources its axes have.
+    fn error(model: &Model, roughness: &[f64], mus: &[f64], tolerance: f64) -> Option<(f64, [usize; 2])> {
+        let slopes = slopes(model)?;
+        let branches = slopes.branches?;
+        let alphas: Vec<_> = roughness.iter().map(|r| r * r).collect();
+        let rows = Spread::along_roughness(&alphas, mus, branches, tolerance);
+        let columns = Spread::along_mu(mus, &alphas, branches, tolerance);
+        let counts = [&rows, &columns].map(|s| s.as_ref().map_or(0, |s| s.sources.len()));
+        let rows = rows.or_else(|| Spread::identity(&alphas)).unwrap();
+        let columns = columns.or_else(|| Spread::identity(mus)).unwrap();
+        // Both ends and some between.
+        let some = |n: usize| {
+            (0..n).filter(|k| *k < 6 || k + 4 >= n || k % (n / 12).max(1) == 0).collect::<Vec<_>>()
+        };
+        let (picked_rows, picked_columns) = (some(alphas.len()), some(mus.len()));
+        let pick = |matrix: &Matrix, picked: &[usize]| Matrix {
+            rows: picked.len(),
+            columns: matrix.columns,
+            values: picked
+                .iter()
+                .flat_map(|&k| matrix.values[k * matrix.columns..][..matrix.columns].to_vec())
+                .collect(),
+        };
+        let raw = exact(slopes, &rows.sources, &columns.sources);
+        let spread =
+            pick(&rows.matrix, &picked_rows).apply(&pick(&columns.matrix, &picked_columns).apply(&raw));
+        let of = |values: &[f64], picked: &[usize]| picked.iter().map(|&k| values[k]).collect::<Vec<_>>();
+        let exact = exact(slopes, &of(&alphas, &picked_rows), &of(mus, &picked_columns));
+        let difference = |(a, b): (&[f64; 2], &[f64; 2])| (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
+        Some((spread.iter().zip(&exact).map(difference).fold(0.0, f64::max), counts))
+    }
+
+    /// What interpolation alone is off by stays below an eighth of the tolerance.
+    #[test]
+    fn interpolation_keeps_its_share() {
+        for model in MICROFACETS.iter() {
+            for (name, roughness, mus) in tables() {
+                for tolerance in [1e-2, 1e-4, 1e-6] {
+                    let Some((error, counts)) = error(model, &roughness, &mus, tolerance) else { continue };
+                    let model = model.name;
+                    assert!(
+                        error <= SHARE * tolerance,
+                        "{model}, {name} {counts:?}: {error:.1e} to {tolerance:e}"
+                    );
+                }
+            }
+        }
+    }
+
+    /// `cargo test --release -- --ignored print_the_error_of_spreading --nocapture`: how much of its share each table
+    /// uses, from which the strength of the branch points was chosen.
+    #[test]
+    #[ignore = "takes minutes; prints"]
+    fn print_the_error_of_spreading() {
+        for model in MICROFACETS.iter() {
+            for (name, roughness, mus) in tables() {
+                for decade in 1..=8 {
+                    let tolerance = 10f64.powi(-decade);
+                    let Some((error, [rows, columns])) = error(model, &roughness, &mus, tolerance) else {
+                        continue;
+                    };
+                    let share = error / (SHARE * tolerance);
+                    println!(
+                        "{}, {name}: 1e-{decade} by {rows} × {columns}, {share:.2} of the share",
+                        model.name
+                    );
+                }
+            }
+        }
+    }
 }

@@ -23,7 +23,7 @@ impl Ndf for Ggx {
     const SAMPLES: Part = ggx_samples::PART;
     /// Smith's root α² + (1 − α²) μ² vanishes at μ = ±iα/√(1 − α²), and the map ends at its own branch point,
     /// α = ±i t_max, at μ = ±2iα/(1 − α²). The strength is what `print_the_error_model` of `spread` prints.
-    const BRANCHES: Option<Branches> = Some(Branches { strength: 2.0 });
+    const BRANCHES: Option<Branches> = Some(Branches { strength: 1.0 });
 
     fn ndf(h: &Half, hz2: f64, alpha: f64) -> f64 {
         let q = alpha * h.h2 / (alpha * alpha * hz2 + h.ht2);
