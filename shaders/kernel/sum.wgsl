@@ -20,7 +20,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if invocation >= job.end {
         return;
     }
-    let n = job.nodes;
+    // 0 is added, so that drivers do not know that all invocations take as many turns: lavapipe 22.3 would run such a
+    // loop on to its limit of 65,535, masked, for a millisecond.
+    let n = job.nodes + (invocation >> 31u);
     let fours = invocation / job.tiles;
     let c = 4u * fours;
     let u = 4u * (invocation - fours * job.tiles);
