@@ -3,8 +3,8 @@
 //! an integral each.
 //!
 //! A polynomial is limited by the branch points of ρ off the real axis: at μ = ±iα and so, along roughness
-//! r = √α, at √(±iμ) (see [`Branches`]); and at 0, where ρ has logarithms of μ and of α. In x = asinh(value/δ), linear up to δ and logarithmic beyond, they
-//! keep away from the range by up to π/2 and π/4. With n Chebyshev points the error falls as e^(−n q), where
+//! r = √α, at √(±iμ) (see [`Branches`]); and at 0, where ρ has logarithms of μ and of α. In x = asinh(value/δ),
+//! linear up to δ and logarithmic beyond, they keep away from the range by up to π/2 and π/4. With n Chebyshev points the error falls as e^(−n q), where
 //! cosh q is the half axis of the largest ellipse with foci at the range's ends that holds no branch point
 //! (Trefethen 2013, theorem 8.2): so many points as
 //!     strength · e^(−n q) ≤ tolerance/8
@@ -42,6 +42,9 @@ const RATIO: f64 = 1.4;
 const MOST_Q: f64 = 1.5;
 /// How many of the smallest values may be sources themselves.
 const KEPT: [usize; 9] = [0, 1, 2, 3, 4, 6, 8, 12, 16];
+/// The largest matrix, and the most results between two of them: with 8 and 16 bytes each, 32 and 64 MiB, which
+/// every device binds.
+pub(crate) const LARGEST: usize = 1 << 22;
 /// The longest axis that an identity carries over, where only the other one is spread.
 const LONGEST_IDENTITY: usize = 512;
 
@@ -84,7 +87,7 @@ impl Spread {
         let (kept, polynomial) = splits.map(of).min_by_key(|(kept, p)| kept + p.n)?;
         let kept = &sorted[..kept];
         let columns = kept.len() + polynomial.n;
-        if columns as f64 > PAYS * values.len() as f64 {
+        if columns as f64 > PAYS * values.len() as f64 || values.len().saturating_mul(columns) > LARGEST {
             return None;
         }
         let row = |&value: &f64| {
@@ -136,18 +139,14 @@ impl Polynomial {
             let q = points.iter().map(|&[re, im]| {
                 let [x, y] = asinh([re / delta, im / delta]);
                 let (x, y) = ((x - middle) / half, y / half);
-                (0.5 * ((x - 1.0).hypot(y) + (x + 1.0).hypot(y))).acosh()
+                (0.5 * ((x - 1.0).hypot(y) + (x + 1.0).hypot(y))).max(1.0).acosh()
             });
             let q = q.fold(MOST_Q, f64::min);
-            let n = if half > 0.0 { 1 + (decay.max(0.0) / q).ceil() as usize } else { 1 };
+            // As good as never where q is 0.
+            let n = if half > 0.0 { 1 + (decay.max(0.0) / q).ceil().min(1e9) as usize } else { 1 };
             Self { n, delta, middle, half }
         };
-        (0..DELTAS).map(of).min_by_key(|p| p.n).unwrap_or(Self {
-            n: usize::MAX,
-            delta: low,
-            middle: 0.0,
-            half: 0.0,
-        })
+        (1..DELTAS).map(of).fold(of(0), |best, other| if other.n < best.n { other } else { best })
     }
 
     /// An angle whose cosine is a Chebyshev point, and their sequence rises.
@@ -167,7 +166,7 @@ impl Polynomial {
             let angle = self.angle(k);
             let distance = x - angle.cos();
             // One point, or on one: that is the value.
-            if !(distance.abs() > 0.0) {
+            if distance == 0.0 || distance.is_nan() {
                 weights.fill(0.0);
                 weights[k] = 1.0;
                 return;

@@ -9,7 +9,7 @@ use crate::quadrature::{Node, gauss_legendre, midpoint};
 use crate::quantity::Evaluation;
 use crate::sampling::{SampleWork, Sampler};
 use crate::slopes::SlopeWork;
-use crate::spread::{Matrix, Spread};
+use crate::spread::{LARGEST, Matrix, Spread};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::iter;
 
@@ -188,6 +188,10 @@ fn slopes_work(
     }
     let both = (rows.or_else(|| Spread::identity(&alphas)), columns.or_else(|| Spread::identity(&mus)));
     let (Some(rows), Some(columns)) = both else { return direct(alphas, mus) };
+    // Between them, every column at the sources of its rows.
+    if rows.sources.len().saturating_mul(mus.len()) > LARGEST {
+        return direct(alphas, mus);
+    }
     work(rows.sources, columns.sources, vec![columns.matrix, rows.matrix])
 }
 
