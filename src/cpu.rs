@@ -48,7 +48,10 @@ pub(crate) fn evaluate<E: Send>(
                     };
                     let raw = (0..count).into_par_iter().map(one).collect::<Result<Vec<_>, E>>()?;
                     let texels = matrices.iter().fold(raw, |raw, matrix| matrix.apply(&raw));
-                    sums.chunks_mut(channels).zip(texels).for_each(|(out, sum)| add(out, lobe, sum));
+                    let raised = |x: f64| if x < 0.0 && x >= -work.below_zero() { 0.0 } else { x };
+                    sums.chunks_mut(channels)
+                        .zip(texels)
+                        .for_each(|(out, sum)| add(out, lobe, sum.map(raised)));
                 }
             },
         }

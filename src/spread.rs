@@ -247,7 +247,7 @@ mod tests {
 
     /// Row by row, to 1e-10.
     fn exact(slopes: &'static Slopes, alphas: &[f64], mus: &[f64]) -> Vec<[f64; 2]> {
-        let work = SlopeWork::new(slopes, mus.to_vec(), alphas, 1e-10);
+        let work = SlopeWork::new(slopes, mus.to_vec(), alphas, 1e-10, 0);
         let map = slopes.map(work.tolerance);
         let integral = |at: usize| {
             let (row, column) = (at / mus.len(), at % mus.len());

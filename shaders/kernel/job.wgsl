@@ -10,7 +10,7 @@ struct Job {
     azimuths: u32,
     nodes: u32,
     tiles: u32,
-    alpha: f32,               // of a list of points
+    alpha: f32,               // of a list of points; of what is interpolated, by how much it may fall below 0
 }
 
 const INV_PI: real = 0.3183098861837907;

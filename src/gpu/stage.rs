@@ -129,7 +129,14 @@ impl Stages {
                     Ok(Stage {
                         kernel: kernel(k),
                         channels: if k == last { channels } else { 0 },
-                        ..Stage::outer(&upload, matrix, Job::new(lobe, 1.0))?
+                        ..Stage::outer(
+                            &upload,
+                            matrix,
+                            Job {
+                                alpha: if k == last { work.below_zero() as f32 } else { 0.0 },
+                                ..Job::new(lobe, 1.0)
+                            },
+                        )?
                     })
                 };
                 let outer = outer.iter().enumerate().map(stage).collect::<Result<_>>()?;
