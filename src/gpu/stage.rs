@@ -124,19 +124,13 @@ impl Stages {
                 }
                 // The last of them makes channels.
                 let last = outer.len() - 1;
+                let below_zero = |k| if k == last { work.below_zero() as f32 } else { 0.0 };
                 let kernel = |k| if k == last && accumulate { Kernel::AddSum } else { Kernel::Sum };
                 let stage = |(k, matrix)| {
                     Ok(Stage {
                         kernel: kernel(k),
                         channels: if k == last { channels } else { 0 },
-                        ..Stage::outer(
-                            &upload,
-                            matrix,
-                            Job {
-                                alpha: if k == last { work.below_zero() as f32 } else { 0.0 },
-                                ..Job::new(lobe, 1.0)
-                            },
-                        )?
+                        ..Stage::outer(&upload, matrix, Job { alpha: below_zero(k), ..Job::new(lobe, 1.0) })?
                     })
                 };
                 let outer = outer.iter().enumerate().map(stage).collect::<Result<_>>()?;
