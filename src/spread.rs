@@ -307,7 +307,9 @@ mod tests {
     #[test]
     fn interpolation_keeps_its_share() {
         for model in MICROFACETS.iter() {
-            for (name, roughness, mus) in tables() {
+            // The other terms have the same branch points: some tables will do.
+            let every = if model.name == "ggx" { 1 } else { 4 };
+            for (name, roughness, mus) in tables().into_iter().step_by(every) {
                 for tolerance in [1e-2, 1e-4, 1e-6] {
                     let Some((error, counts)) = error(model, &roughness, &mus, tolerance) else { continue };
                     let model = model.name;

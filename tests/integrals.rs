@@ -242,12 +242,11 @@ fn between_their_sources_meet_every_tolerance() {
     for (quantity, roughness, axes) in tables {
         let axes: Vec<_> = [roughness].into_iter().chain(axes).collect();
         let plan = TablePlan::basis("spread", quantity, model("ggx"), None, axes).unwrap();
-        for decade in [1, 2, 3, 4, 5, 6, 8] {
+        for decade in [1, 3, 6, 8] {
             let plan = plan.clone().with_tolerance(10f64.powi(-decade));
             for evaluator in evaluators() {
-                let table = bake(evaluator, &plan, Check::Sample(100));
+                let table = bake(evaluator, &plan, Check::Sample(24));
                 let worst = table.error.measured_max.unwrap();
-                // The reference itself is good to 1e-10 up to the horizon, where it is good to 1e-9.
                 assert!(worst <= plan.tolerance, "{plan} ({}): {:?}", table.precision, table.error);
                 assert!(table.error.estimate.unwrap() <= plan.tolerance, "{plan}: {:?}", table.error);
             }
