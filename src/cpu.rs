@@ -25,19 +25,35 @@ pub(crate) fn evaluate<E: Send>(
                     tick(share / rows as f64)
                 })?;
             }
-            WorkKind::Integrals { inner, outer } => {
-                let texels = sums.len() / channels;
-                sums.par_chunks_mut(channels).enumerate().try_for_each(|(texel, out)| {
-                    let mut sum = [0.0; 2];
-                    for (k, weight) in outer.iter().enumerate() {
-                        let at = texel * outer.len() + k;
-                        let [a, b] = integrate(&work, inner, lobe, at / inner.count(), at % inner.count());
-                        sum = [sum[0] + weight * a, sum[1] + weight * b];
-                    }
-                    add(out, lobe, sum);
-                    tick(share / texels as f64)
-                })?;
-            }
+            WorkKind::Integrals { inner, outer } => match &outer[..] {
+                [sum] => {
+                    let texels = sums.len() / channels;
+                    sums.par_chunks_mut(channels).enumerate().try_for_each(|(texel, out)| {
+                        let mut total = [0.0; 2];
+                        for (k, weight) in sum.values.iter().enumerate() {
+                            let at = texel * sum.columns + k;
+                            let [a, b] =
+                                integrate(&work, inner, lobe, at / inner.count(), at % inner.count());
+                            total = [total[0] + weight * a, total[1] + weight * b];
+                        }
+                        add(out, lobe, total);
+                        tick(share / texels as f64)
+                    })?;
+                }
+                matrices => {
+                    let count = work.alphas.len() * inner.count();
+                    let one = |at: usize| {
+                        tick(share / count as f64)?;
+                        Ok(integrate(&work, inner, lobe, at / inner.count(), at % inner.count()))
+                    };
+                    let raw = (0..count).into_par_iter().map(one).collect::<Result<Vec<_>, E>>()?;
+                    let texels = matrices.iter().fold(raw, |raw, matrix| matrix.apply(&raw));
+                    let raised = |x: f64| if x < 0.0 && x >= -work.below_zero() { 0.0 } else { x };
+                    sums.chunks_mut(channels)
+                        .zip(texels)
+                        .for_each(|(out, sum)| add(out, lobe, sum.map(raised)));
+                }
+            },
         }
     }
     Ok(sums)

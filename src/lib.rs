@@ -91,6 +91,7 @@ mod sampling;
 pub mod scene;
 pub mod setting;
 mod slopes;
+mod spread;
 pub mod storage;
 pub mod table;
 pub mod trade;

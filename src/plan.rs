@@ -88,8 +88,8 @@ impl Lobe {
     }
 
     /// The settings with some shapes.
-    pub(crate) fn settings(&self, alphas: Vec<f64>) -> Vec<Setting> {
-        alphas.into_iter().map(|alpha| self.setting(alpha)).collect()
+    pub(crate) fn settings(&self, alphas: &[f64]) -> Vec<Setting> {
+        alphas.iter().map(|&alpha| self.setting(alpha)).collect()
     }
 }
 

@@ -34,7 +34,14 @@ pub(crate) const TILE_ALPHAS: usize = 4;
 pub(crate) const TILE_COLUMNS: usize = 8;
 
 impl SlopeWork {
-    pub fn new(slopes: &'static Slopes, mus: Vec<f64>, settings: &[Setting], tolerance: f64) -> Self {
+    /// Each texel takes `spare` azimuths and nodes more than its tolerance asks for.
+    pub fn new(
+        slopes: &'static Slopes,
+        mus: Vec<f64>,
+        settings: &[Setting],
+        tolerance: f64,
+        spare: usize,
+    ) -> Self {
         let (mut azimuths, mut nodes) = (Vec::new(), Vec::new());
         // Each rule that some tile takes, and where its azimuths and its nodes are.
         let mut rules = HashMap::new();
@@ -43,6 +50,10 @@ impl SlopeWork {
         for settings in settings.chunks(TILE_ALPHAS) {
             for (group, mus) in mus.chunks(TILE_COLUMNS).enumerate() {
                 let counts = most(mus, settings, |mu, setting| (slopes.counts)(mu, setting, tolerance));
+                let counts = counts.map(|SlopeCounts { azimuths, nodes }| SlopeCounts {
+                    azimuths: azimuths + spare,
+                    nodes: nodes + spare,
+                });
                 let side = |(sign, counts): (f64, SlopeCounts)| {
                     let first_azimuth = azimuths_of.entry((group, sign > 0.0, counts.azimuths));
                     let first_azimuth = *first_azimuth.or_insert_with(|| {

@@ -10,12 +10,13 @@ use crate::quantity::Evaluation;
 use crate::sampling::{SampleWork, Sampler};
 use crate::setting::Setting;
 use crate::slopes::SlopeWork;
+use crate::spread::{LARGEST, Matrix, Spread};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::iter;
 
 /// The work of one lobe.
 pub(crate) struct Work {
-    /// α along the table's slowest axis.
+    /// α of each row of values, or of inner integrals: along the table's slowest axis, or at its sources.
     pub alphas: Vec<f64>,
     pub kind: WorkKind,
 }
@@ -23,8 +24,10 @@ pub(crate) struct Work {
 pub(crate) enum WorkKind {
     /// A row of values for each (α, pair): one value an azimuth.
     Values { pairs: Vec<Pair>, azimuths: Vec<Azimuth> },
-    /// For each (α, direction, outer node) a raw integral; a texel is the sum of its outer nodes.
-    Integrals { inner: Inner, outer: Vec<f64> },
+    /// For each (α, k) a raw integral. They become texels by matrices one after the other, each of which
+    /// transposes: by one row of weights, where each texel has integrals of its own, or else by two matrices,
+    /// which spread those at the sources of a table over it.
+    Integrals { inner: Inner, outer: Vec<Matrix> },
 }
 
 /// The inner integrals: one result for each (α, k), k counting directions and outer nodes.
@@ -47,21 +50,34 @@ impl Work {
     /// The work of `lobe` in `table`.
     pub fn new(table: &TablePlan, lobe: &Lobe) -> Self {
         let alphas = table.alphas(lobe);
-        let kind = match table.quantity.evaluation {
-            Evaluation::Value => values(table),
-            Evaluation::Directional => integrals(table, lobe, &directions(table), &[1.0]),
+        match table.quantity.evaluation {
+            Evaluation::Value => Self { alphas, kind: values(table) },
+            Evaluation::Directional => integrals(table, lobe, alphas, &directions(table), &[1.0]),
             Evaluation::Hemispherical => {
                 // ρ_hh = ∫ ρ 2μ dμ with μ = u²: ρ turns at μ ≈ α, where u has nodes to spare.
                 let nodes = gauss_legendre(MEAN_NODES[decade(table.rule_tolerance())]);
                 let thetas: Vec<_> = nodes.iter().map(|node| (node.x * node.x).acos()).collect();
                 let weights: Vec<_> = nodes.iter().map(|n| 4.0 * n.x.powi(3) * n.weight).collect();
-                integrals(table, lobe, &thetas, &weights)
+                integrals(table, lobe, alphas, &thetas, &weights)
             }
-        };
-        Self { alphas, kind }
+        }
     }
 
-    /// Evaluations of the integrand, or of values, for the whole table.
+    /// Whether a texel is interpolated between integrals, rather than a sum of its own.
+    pub fn is_spread(&self) -> bool {
+        matches!(&self.kind, WorkKind::Integrals { outer, .. } if outer.len() > 1)
+    }
+
+    /// By how much interpolation may leave an integral below 0, where there is none: that is 0 then.
+    pub fn below_zero(&self) -> f64 {
+        match &self.kind {
+            WorkKind::Integrals { inner: Inner::Slopes(work), .. } if self.is_spread() => work.tolerance,
+            _ => 0.0,
+        }
+    }
+
+    /// Evaluations of the integrand, or of values, for the whole table. What a texel takes beside them, some
+    /// dozens of products of the outer matrices, does not count.
     pub fn evaluations(&self) -> u64 {
         let rows = self.alphas.len();
         let count = match &self.kind {
@@ -113,18 +129,19 @@ fn values(table: &TablePlan) -> WorkKind {
 
 /// Integrals over one direction for each fixed θ, times `weights`, which run over the fixed ones
 /// where a texel sums several (ρ_hh), and are just 1 where each is a texel.
-fn integrals(table: &TablePlan, lobe: &Lobe, thetas: &[f64], weights: &[f64]) -> WorkKind {
+fn integrals(table: &TablePlan, lobe: &Lobe, alphas: Vec<f64>, thetas: &[f64], weights: &[f64]) -> Work {
+    let of = |inner: Inner, outer: Vec<f64>| WorkKind::Integrals { inner, outer: vec![Matrix::row(outer)] };
     let smooth = |grid: Vec<Cell>, azimuths: Vec<Azimuth>| {
         let pairs = thetas.iter().flat_map(|&theta| grid.iter().map(move |cell| cell.pair(theta))).collect();
         let outer = weights.iter().flat_map(|w| grid.iter().map(move |cell| w * cell.weight)).collect();
-        WorkKind::Integrals { inner: Inner::Product { pairs, azimuths }, outer }
+        of(Inner::Product { pairs, azimuths }, outer)
     };
     let mus = || thetas.iter().map(|theta| theta.cos().max(MU_MIN)).collect();
     let sampled = |sampler: Sampler, slopes: &'static Slopes, by: &'static Sampling, samples: usize| {
         let work = SampleWork::new(sampler, slopes, by, mus(), samples);
         let chunks = iter::repeat_n(1.0 / samples as f64, work.chunks);
         let outer = weights.iter().flat_map(|w| chunks.clone().map(move |c| w * c)).collect();
-        WorkKind::Integrals { inner: Inner::Samples(work), outer }
+        of(Inner::Samples(work), outer)
     };
     let sampler = match table.rule {
         Rule::Hammersley { samples } => Some((Sampler::Ndf, samples)),
@@ -135,9 +152,9 @@ fn integrals(table: &TablePlan, lobe: &Lobe, thetas: &[f64], weights: &[f64]) ->
     if let (Some((sampler, samples)), Integral::Slopes(slopes)) = (sampler, lobe.model.integral)
         && let Some(by) = &slopes.sampling
     {
-        return sampled(sampler, slopes, by, samples);
+        return Work { alphas, kind: sampled(sampler, slopes, by, samples) };
     }
-    match (table.rule, lobe.model.integral) {
+    let kind = match (table.rule, lobe.model.integral) {
         (Rule::Gauss { theta, phi }, _) => smooth(gauss_cells(theta), gauss_azimuths(phi)),
         (Rule::Grid { theta, phi }, _) => smooth(grid_cells(theta), grid_azimuths(phi)),
         // The plan refuses the sampling rules for lobes without samplers.
@@ -146,20 +163,55 @@ fn integrals(table: &TablePlan, lobe: &Lobe, thetas: &[f64], weights: &[f64]) ->
             smooth(gauss_cells(theta), gauss_azimuths(2 * phi))
         }
         (_, Integral::Slopes(slopes)) => {
-            let work =
-                SlopeWork::new(slopes, mus(), &lobe.settings(table.alphas(lobe)), table.rule_tolerance());
-            WorkKind::Integrals { inner: Inner::Slopes(work), outer: weights.to_vec() }
+            return slopes_work(table, lobe, slopes, [alphas, mus()], weights);
         }
-        (_, Integral::Delta(directional)) => WorkKind::Integrals {
-            inner: Inner::Analytic { directional, mus: thetas.iter().map(|theta| theta.cos()).collect() },
-            outer: weights.to_vec(),
-        },
+        (_, Integral::Delta(directional)) => {
+            let mus = thetas.iter().map(|theta| theta.cos()).collect();
+            of(Inner::Analytic { directional, mus }, weights.to_vec())
+        }
         // The plan refuses it; were it to come here, no number would.
-        (_, Integral::Unbounded(_)) => WorkKind::Integrals {
-            inner: Inner::Analytic { directional: |_, _| [f64::NAN; 2], mus: mus() },
-            outer: weights.to_vec(),
-        },
+        (_, Integral::Unbounded(_)) => {
+            of(Inner::Analytic { directional: |_, _| [f64::NAN; 2], mus: mus() }, weights.to_vec())
+        }
+    };
+    Work { alphas, kind }
+}
+
+/// Integrals in slopes: at each texel, or at the sources of the table where that takes fewer.
+fn slopes_work(
+    table: &TablePlan,
+    lobe: &Lobe,
+    slopes: &'static Slopes,
+    [alphas, mus]: [Vec<f64>; 2],
+    weights: &[f64],
+) -> Work {
+    let tolerance = table.rule_tolerance();
+    let work = |alphas: Vec<f64>, mus: Vec<f64>, outer: Vec<Matrix>| {
+        // Interpolation adds errors of neighbouring sources up, by about 3 along an axis (1 + 2/π ln n): with one
+        // azimuth and node more, an integral has a third of its error.
+        let spare = usize::from(outer.len() > 1);
+        let inner = Inner::Slopes(SlopeWork::new(slopes, mus, &lobe.settings(&alphas), tolerance, spare));
+        Work { alphas, kind: WorkKind::Integrals { inner, outer } }
+    };
+    let direct = |alphas, mus| work(alphas, mus, vec![Matrix::row(weights.to_vec())]);
+    let Some(branches) = slopes.branches else { return direct(alphas, mus) };
+    let rows = Spread::along_roughness(&alphas, &mus, branches, tolerance);
+    if weights.len() > 1 {
+        // The mean over directions has nodes of its own for columns.
+        let Some(rows) = rows else { return direct(alphas, mus) };
+        return work(rows.sources, mus, vec![Matrix::row(weights.to_vec()), rows.matrix]);
     }
+    let columns = Spread::along_mu(&mus, &alphas, branches, tolerance);
+    if rows.is_none() && columns.is_none() {
+        return direct(alphas, mus);
+    }
+    let both = (rows.or_else(|| Spread::identity(&alphas)), columns.or_else(|| Spread::identity(&mus)));
+    let (Some(rows), Some(columns)) = both else { return direct(alphas, mus) };
+    // Between them, every column at the sources of its rows.
+    if rows.sources.len().saturating_mul(mus.len()) > LARGEST {
+        return direct(alphas, mus);
+    }
+    work(rows.sources, columns.sources, vec![columns.matrix, rows.matrix])
 }
 
 /// A node in θe, and where its cell lies if it has one.

@@ -225,3 +225,40 @@ fn meet_a_billionth_in_f64() {
         assert!(table.error.texels_checked >= 64 && worst <= 1e-9, "{:?}", table.error);
     }
 }
+
+/// Tables have fewer integrals than texels: polynomials carry them there, within the same tolerance, over all
+/// kinds of axes, the mirror and the horizon included, on the device as on the CPU path.
+#[test]
+fn between_their_sources_meet_every_tolerance() {
+    let smooth_steps: Vec<_> = (0..80).map(|k| (k as f64 / 79.0).powi(2)).collect();
+    let tables = [
+        (&SPLIT_SUM, axis(Variable::Roughness, 64), vec![axis(Mu, 72)]),
+        (&SPLIT_SUM, listed(Variable::Roughness, &smooth_steps), vec![nodes(Mu, 50, [1e-3, 1.0])]),
+        (&SPLIT_SUM, nodes(Variable::Roughness, 40, [0.8, 1.0]), vec![listed(Mu, &smooth_steps)]),
+        (&RHO_DH, nodes(Variable::Roughness, 40, [0.23, 0.84]), vec![axis(ThetaI, 61)]),
+        (&RHO_DH, listed(Variable::Roughness, &[0.0, 0.1, 0.4]), vec![axis(ThetaI, 90)]),
+        (&RHO_HH, axis(Variable::Roughness, 100), vec![]),
+    ];
+    for (quantity, roughness, axes) in tables {
+        let axes: Vec<_> = [roughness].into_iter().chain(axes).collect();
+        let plan = TablePlan::basis("spread", quantity, model("ggx"), None, axes).unwrap();
+        for decade in [1, 3, 6, 8] {
+            let plan = plan.clone().with_tolerance(10f64.powi(-decade));
+            for evaluator in evaluators() {
+                let table = bake(evaluator, &plan, Check::Sample(24));
+                let worst = table.error.measured_max.unwrap();
+                assert!(worst <= plan.tolerance, "{plan} ({}): {:?}", table.precision, table.error);
+                assert!(table.error.estimate.unwrap() <= plan.tolerance, "{plan}: {:?}", table.error);
+            }
+        }
+    }
+}
+
+/// A table of more than one piece: each has the sources again, and takes its own rows of them.
+#[test]
+fn of_several_pieces_are_one_table() {
+    let axes = vec![axis(Variable::Roughness, 2101), axis(Mu, 2049)];
+    let plan = TablePlan::basis("large", &SPLIT_SUM, model("ggx"), None, axes).unwrap();
+    let table = bake(device(), &plan.with_tolerance(1e-4), Check::Sample(200));
+    assert!(table.error.measured_max.unwrap() <= 1e-4, "{:?}", table.error);
+}

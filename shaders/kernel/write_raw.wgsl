@@ -1,7 +1,7 @@
 // An inner integral that an outer sum goes on with.
 
-@group(0) @binding(1) var<storage, read_write> raw: array<real2>;
+@group(0) @binding(1) var<storage, read_write> results: array<real2>;
 
 fn write(at: u32, ab: real2) {
-    raw[at] = ab;
+    results[at] = ab;
 }

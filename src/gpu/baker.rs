@@ -2,7 +2,7 @@
 
 use super::compose::{Kernel, VALUE_WINDOW, compose, validate};
 use super::loops::{self, SAFE_TURNS};
-use super::stage::{Job, Rows, Stage, Stages};
+use super::stage::{Job, Rows, Stage, Stages, TILE_SUMS};
 use crate::axis::Variable;
 use crate::error::{Error, Result};
 use crate::models::Model;
@@ -232,43 +232,64 @@ impl Baker {
     ) -> Result<Vec<Step>> {
         let mut steps = Vec::new();
         for stages in stages {
-            let Stages { inner, sum } = stages;
-            let order = stages.order(&units);
+            let Stages { inner, outer, .. } = stages;
+            if let (Some(rows), [quads]) = (&inner.rows, &inner.inputs[..]) {
+                self.value_steps(inner, (rows, quads), &units, buffer, &mut steps)?;
+                continue;
+            }
+            let rows = stages.inner_units(&units);
+            let order = stages.order(&rows);
             let order =
                 order.map(|order| self.init(bytemuck::cast_slice(&order), wgpu::BufferUsages::STORAGE));
             let order: Vec<_> = order.iter().collect();
-            match sum {
-                None => self.steps(inner, &order, &units, buffer, &mut steps)?,
-                Some(sum) => {
-                    let raw = self.output(units.len() * inner.per_unit * 2 * inner.precision.bytes());
-                    self.steps(inner, &order, &units, &raw, &mut steps)?;
-                    self.steps(sum, &[&raw], &units, buffer, &mut steps)?;
-                }
+            let range =
+                rows.start / inner.units * inner.per_unit..rows.end.div_ceil(inner.units) * inner.per_unit;
+            let job = Job { base: count(rows.start * inner.per_unit)?, ..inner.job };
+            let mut results = rows.len() * inner.per_unit;
+            let raw = |results: usize| self.output(results * 2 * inner.precision.bytes());
+            let mut output = if outer.is_empty() { buffer.clone() } else { raw(results) };
+            self.steps(inner, job, range, &order, &output, &mut steps)?;
+            for (k, sum) in outer.iter().enumerate() {
+                let is_last = k + 1 == outer.len();
+                let columns = results / sum.job.nodes as usize;
+                // Of what is spread over the table, the tile's own.
+                let rows = if is_last && stages.sources.is_some() {
+                    units.clone()
+                } else {
+                    0..sum.job.azimuths as usize
+                };
+                results = rows.len() * columns;
+                let next = if is_last { buffer.clone() } else { raw(results) };
+                let tiles = columns.div_ceil(TILE_SUMS);
+                let range = rows.start / TILE_SUMS * tiles..rows.end.div_ceil(TILE_SUMS) * tiles;
+                let job = Job {
+                    base: count(rows.start * columns)?,
+                    columns: count(columns)?,
+                    tiles: count(tiles)?,
+                    ..sum.job
+                };
+                self.steps(sum, job, range, &[&output], &next, &mut steps)?;
+                output = next;
             }
         }
         Ok(steps)
     }
 
-    /// The dispatches of a stage over some units: as many as the cost asks for.
+    /// The dispatches of a stage for some invocations: as many as the cost asks for.
     fn steps(
         &self,
         stage: &Stage,
+        job: Job,
+        range: Range<usize>,
         more_inputs: &[&wgpu::Buffer],
-        units: &Range<usize>,
         output: &wgpu::Buffer,
         steps: &mut Vec<Step>,
     ) -> Result<()> {
         let pipeline = self.pipeline(stage.kernel, stage.model, stage.channels, stage.precision)?;
-        if let (Some(rows), [quads]) = (&stage.rows, &stage.inputs[..]) {
-            return self.value_steps(stage, &pipeline, (rows, quads), units, output, steps);
-        }
-        let range =
-            units.start / stage.units * stage.per_unit..units.end.div_ceil(stage.units) * stage.per_unit;
-        let base = count(units.start * stage.per_unit)?;
         let per_step = (EVALUATIONS_PER_DISPATCH / stage.cost).clamp(WORKGROUP, INVOCATIONS_PER_DISPATCH);
         for first in range.clone().step_by(per_step) {
             let end = (first + per_step).min(range.end);
-            let job = Job { first: count(first)?, end: count(end)?, base, ..stage.job };
+            let job = Job { first: count(first)?, end: count(end)?, ..job };
             let job = self.init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
             let buffers = [&job, output].into_iter().chain(&stage.inputs).chain(more_inputs.iter().copied());
             steps.push(Step {
@@ -285,13 +306,13 @@ impl Baker {
     fn value_steps(
         &self,
         stage: &Stage,
-        pipeline: &wgpu::ComputePipeline,
         (rows, quads): (&Rows, &wgpu::Buffer),
         units: &Range<usize>,
         output: &wgpu::Buffer,
         steps: &mut Vec<Step>,
     ) -> Result<()> {
         const BYTES: u64 = VALUE_WINDOW as u64 * 32;
+        let pipeline = &self.pipeline(stage.kernel, stage.model, stage.channels, stage.precision)?;
         let rows = self.init(bytemuck::cast_slice(&rows.of(units)), wgpu::BufferUsages::STORAGE);
         for quad in (0..stage.per_unit).step_by(VALUE_WINDOW) {
             let columns = VALUE_WINDOW.min(stage.per_unit - quad);

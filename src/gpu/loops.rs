@@ -42,7 +42,7 @@ fn turns(work: &Work) -> usize {
                 Inner::Samples(work) => in_blocks(work.chunk) + 5,
                 Inner::Analytic { .. } => 0,
             };
-            inner.max(in_blocks(outer.len()))
+            outer.iter().map(|matrix| in_blocks(matrix.columns)).fold(inner, usize::max)
         }
     }
 }
@@ -80,7 +80,7 @@ mod tests {
         for model in models::all().filter(|model| !matches!(model.integral, Integral::Unbounded(_))) {
             for tolerance in (1..=10).map(|decade| 10f64.powi(-decade)) {
                 for quantity in [&RHO_DH, &RHO_HH] {
-                    let rough = model.has_roughness.then(|| Axis::natural(Variable::Roughness, 256).unwrap());
+                    let rough = model.shape.map(|_| Axis::natural(Variable::Roughness, 256).unwrap());
                     let theta = (quantity == &RHO_DH).then(|| Axis::natural(Variable::ThetaI, 256).unwrap());
                     let axes = rough.into_iter().chain(theta).collect();
                     let plan = TablePlan::basis("t", quantity, model, None, axes).unwrap();

@@ -8,14 +8,17 @@ use crate::pair::{Azimuth, Pair};
 use crate::plan::{Lobe, Precision};
 use crate::sampling::Sampler;
 use crate::slopes::{Side, TILE_ALPHAS, TILE_COLUMNS};
+use crate::spread::Matrix;
 use crate::work::{Inner, Work, WorkKind};
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 
-/// The stages of one lobe: one that makes the channels, or raw integrals and then their outer sum.
+/// The stages of one lobe: one that makes the channels, or raw integrals and then their outer sums.
 pub(super) struct Stages {
     pub inner: Stage,
-    pub sum: Option<Stage>,
+    pub outer: Vec<Stage>,
+    /// How many α the inner stage takes, if they are the table's sources: all of them for each tile.
+    pub sources: Option<usize>,
 }
 
 /// A kernel and what it reads.
@@ -29,7 +32,7 @@ pub(super) struct Stage {
     pub inputs: Vec<wgpu::Buffer>,
     /// The rows of a table of values, which are uploaded for each tile.
     pub rows: Option<Rows>,
-    /// Results for each unit of the table (see `Layout`).
+    /// Results for each unit of the table (see `Layout`) or source of its α; not of outer sums.
     pub per_unit: usize,
     /// Units whose results one invocation makes.
     pub units: usize,
@@ -103,36 +106,49 @@ impl Stages {
                     units: 1,
                     cost: 4,
                 },
-                sum: None,
+                outer: Vec::new(),
+                sources: None,
             }),
             WorkKind::Integrals { inner, outer } => {
                 let stage = Stage::inner(&upload, inner, &work.alphas)?;
-                let inner = Stage { model: Some(lobe.model), per_unit: inner.count(), ..stage };
+                let parameters = Job::new(lobe, 1.0).parameters;
+                let job = Job { parameters, ..stage.job };
+                let inner = Stage { model: Some(lobe.model), per_unit: inner.count(), job, ..stage };
                 // A texel that is one inner integral needs no sum.
-                if let (&[weight], false) = (&outer[..], accumulate) {
-                    let Job { weights, parameters, .. } = Job::new(lobe, weight);
-                    let job = Job { weights, parameters, ..inner.job };
-                    return Ok(Self { inner: Stage { channels, job, ..inner }, sum: None });
+                if let ([Matrix { rows: 1, values, .. }], false) = (&outer[..], accumulate)
+                    && let &[weight] = &values[..]
+                {
+                    let job = Job { weights: Job::new(lobe, weight).weights, ..inner.job };
+                    return Ok(Self {
+                        inner: Stage { channels, job, ..inner },
+                        outer: Vec::new(),
+                        sources: None,
+                    });
                 }
-                let sum = Stage {
-                    kernel: if accumulate { Kernel::AddSum } else { Kernel::Sum },
-                    model: None,
-                    channels,
-                    precision,
-                    job: Job { nodes: count(outer.len())?, ..Job::new(lobe, 1.0) },
-                    inputs: vec![upload.reals(outer)],
-                    rows: None,
-                    per_unit: inner.per_unit / outer.len(),
-                    units: 1,
-                    cost: outer.len(),
+                // The last of them makes channels.
+                let last = outer.len() - 1;
+                let below_zero = |k| if k == last { work.below_zero() as f32 } else { 0.0 };
+                let kernel = |k| if k == last && accumulate { Kernel::AddSum } else { Kernel::Sum };
+                let stage = |(k, matrix)| {
+                    Ok(Stage {
+                        kernel: kernel(k),
+                        channels: if k == last { channels } else { 0 },
+                        ..Stage::outer(&upload, matrix, Job { alpha: below_zero(k), ..Job::new(lobe, 1.0) })?
+                    })
                 };
-                Ok(Self { inner, sum: Some(sum) })
+                let outer = outer.iter().enumerate().map(stage).collect::<Result<_>>()?;
+                Ok(Self { inner, outer, sources: work.is_spread().then_some(work.alphas.len()) })
             }
         }
     }
 
-    /// The order in which the inner stage takes its rows of four α, if it has one: of the tile's, and of those
-    /// before it, which it does not take.
+    /// What the inner stage does for some units of the table.
+    pub fn inner_units(&self, units: &Range<usize>) -> Range<usize> {
+        self.sources.map_or(units.clone(), |sources| 0..sources)
+    }
+
+    /// The order in which the inner stage takes its rows of four α, if it has one: of its units', and of those
+    /// before them, which it does not take.
     pub fn order(&self, units: &Range<usize>) -> Option<Vec<u32>> {
         matches!(self.inner.kernel, Kernel::Slopes | Kernel::FineSlopes).then(|| {
             let (first, end) = (units.start / TILE_ALPHAS, units.end.div_ceil(TILE_ALPHAS));
@@ -141,9 +157,10 @@ impl Stages {
         })
     }
 
-    /// Bytes between the stages for each unit.
+    /// Bytes between the stages for each unit: none where few sources serve all units.
     pub fn raw_bytes_per_unit(&self) -> usize {
-        if self.sum.is_some() { self.inner.per_unit * 2 * self.inner.precision.bytes() } else { 0 }
+        let direct = !self.outer.is_empty() && self.sources.is_none();
+        if direct { self.inner.per_unit * 2 * self.inner.precision.bytes() } else { 0 }
     }
 }
 
@@ -219,6 +236,28 @@ impl Stage {
     }
 }
 
+impl Stage {
+    /// An outer sum.
+    fn outer(upload: &Upload, matrix: &Matrix, job: Job) -> Result<Self> {
+        Ok(Self {
+            kernel: Kernel::Sum,
+            model: None,
+            channels: 0,
+            precision: upload.precision,
+            job: Job { azimuths: count(matrix.rows)?, nodes: count(matrix.columns)?, ..job },
+            inputs: vec![upload.fours_of_rows(matrix)],
+            rows: None,
+            per_unit: 0,
+            units: TILE_SUMS,
+            // Of 4 × 4 sums: some 64 operations a column, as an evaluation.
+            cost: matrix.columns,
+        })
+    }
+}
+
+/// Rows, and columns, that one invocation of an outer sum takes.
+pub(super) const TILE_SUMS: usize = 4;
+
 /// α padded to whole fours, and how many there were. What is so near the mirror that it is the mirror's
 /// in f64 is 0 to the kernels.
 fn fours(alphas: &[f64]) -> (Vec<f64>, usize) {
@@ -287,6 +326,18 @@ impl Upload<'_> {
             }
             Precision::F64 => self.baker.init(bytemuck::cast_slice(&vectors), usage),
         }
+    }
+
+    /// Of each four rows, column after column.
+    fn fours_of_rows(&self, matrix: &Matrix) -> wgpu::Buffer {
+        let at = |row: usize, column: usize| match row < matrix.rows {
+            true => matrix.values[row * matrix.columns + column],
+            false => 0.0,
+        };
+        let fours = (0..matrix.rows).step_by(TILE_SUMS);
+        let columns =
+            |row| (0..matrix.columns).flat_map(move |k| (row..row + TILE_SUMS).map(move |r| at(r, k)));
+        self.reals(&fours.flat_map(columns).collect::<Vec<_>>())
     }
 
     fn pairs(&self, pairs: &[Pair]) -> wgpu::Buffer {

@@ -187,6 +187,7 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
             integrand: |r, azimuth, mu_e, s| Self::integrand(N::fine_map(r, s), azimuth, mu_e, s),
         },
         counts: Self::counts,
+        branches: N::BRANCHES,
         mirror_limit: |mu_e, s| F::fresnel(mu_e, 1.0 - mu_e, s).map(|f| f * M::mirror(mu_e)),
         sampling: match N::SAMPLES {
             Some(part) => Some(Sampling { part, ndf: N::by_ndf::<M, F>, vndf: N::by_vndf::<M, F> }),

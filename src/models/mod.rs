@@ -156,10 +156,19 @@ pub struct Slopes {
     pub(crate) fine: SlopeMap,
     /// What a texel takes to meet a tolerance, where cos φ > 0 and where it is < 0.
     pub(crate) counts: fn(mu: f64, &Setting, tolerance: f64) -> [SlopeCounts; 2],
+    /// Where ρ(μ, α) is not analytic, if that is known.
+    pub(crate) branches: Option<Branches>,
     /// What α → 0 tends to.
     pub(crate) mirror_limit: fn(mu_e: f64, &Setting) -> [f64; 2],
     /// What peers do in place of all that, if they can.
     pub(crate) sampling: Option<Sampling>,
+}
+
+/// ρ(μ, α) is analytic but for branch points near μ = ±iα, so that tables of it need few integrals.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Branches {
+    /// What e^(−n q) takes to bound the error of n Chebyshev points: measured.
+    pub strength: f64,
 }
 
 /// How much work one side of a texel is.

@@ -27,7 +27,8 @@ impl Floor {
 /// Operations of one evaluation of GGX's integrand; unknown for other models.
 ///
 /// Counted in the sources: each product, sum, minimum, conversion, shift, division and root is one, though
-/// a division and a root take several; what a compiler lifts out of the loop is none. So it is a floor.
+/// a division and a root take several; what a compiler lifts out of the loop is none, nor what interpolates a table
+/// between its integrals. So it is a floor.
 pub(super) fn operations(plan: &TablePlan) -> Option<f64> {
     let [lobe] = &plan.lobes[..] else { return None };
     (lobe.model.name == "ggx").then_some(match plan.rule {

@@ -96,7 +96,8 @@ pub struct Point {
     pub precision: &'static str,
     /// Texels that were computed: all, or the subset's.
     pub texels: usize,
-    /// Evaluations of the integrand for these texels.
+    /// Evaluations of the integrand for these texels. The warped rule does them at Chebyshev points of a table's axes
+    /// and interpolates; the others do them at each texel.
     pub evaluations: u64,
     /// Runs that were timed, after one that was not.
     pub runs: usize,

@@ -3,7 +3,7 @@
 use super::{Map, Ndf, ggx_coarse, ggx_fine, ggx_nodes, ggx_samples};
 use crate::models::fresnel::Fresnel;
 use crate::models::masking::Masking;
-use crate::models::{Part, SlopeCounts, Term, part};
+use crate::models::{Branches, Part, SlopeCounts, Term, part};
 use crate::pair::Half;
 use crate::reference;
 use crate::setting::Setting;
@@ -22,6 +22,10 @@ impl Ndf for Ggx {
     const COARSE: Part = ggx_coarse::PART;
     const FINE: Part = ggx_fine::PART;
     const SAMPLES: Option<Part> = Some(ggx_samples::PART);
+    /// Smith's root α² + (1 − α²) μ² vanishes at μ = ±iα/√(1 − α²), and the map ends at its own branch point,
+    /// α = ±i t_max, at μ = ±2iα/(1 − α²). With this strength `print_the_error_of_spreading` finds at most nine tenths of
+    /// the share.
+    const BRANCHES: Option<Branches> = Some(Branches { strength: 1.5 });
 
     fn ndf(h: &Half, hz2: f64, &Setting { alpha, .. }: &Setting) -> f64 {
         let q = alpha * h.h2 / (alpha * alpha * hz2 + h.ht2);

@@ -9,7 +9,7 @@ pub(crate) mod ggx_samples;
 
 use super::fresnel::Fresnel;
 use super::masking::Masking;
-use super::{Parameter, Part, SlopeCounts, Term};
+use super::{Branches, Parameter, Part, SlopeCounts, Term};
 use crate::pair::Half;
 use crate::reference;
 use crate::setting::{Parameters, Setting};
@@ -29,6 +29,8 @@ pub(crate) trait Ndf {
     const SAMPLES: Option<Part> = None;
     /// The relative error of its values in f32.
     const VALUE_F32: f64 = crate::plan::VALUE_F32;
+    /// Where ρ(μ, α) is not analytic, if that was measured.
+    const BRANCHES: Option<Branches> = None;
 
     /// D(ωm), sr⁻¹.
     fn ndf(h: &Half, hz2: f64, s: &Setting) -> f64;
