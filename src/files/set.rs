@@ -114,6 +114,19 @@ impl TableSet {
         Ok(written)
     }
 
+    /// Adds a file of another kind, a picture or a page, under its own name. Returns its SHA-256, which
+    /// belongs beside the name in the manifest's `files`.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write).
+    #[cfg(feature = "cli")]
+    pub(crate) fn add(&mut self, name: &str, bytes: &[u8]) -> Result<String> {
+        self.refuse_foreign(name)?;
+        save(&self.dir.join(STAGING).join(name), bytes)?;
+        self.staged.insert(name.to_owned());
+        Ok(manifest::hash(bytes))
+    }
+
     /// Where the tiles of a streamed table are kept; `keys` name all that this bake streams, and tiles of
     /// anything else go.
     ///
