@@ -188,10 +188,16 @@ impl View {
                 None => Some(format!("{} = {}", parameter.name, parameter.default?)),
             }
         });
+        let is_default = !given.iter().any(|(key, _)| ["masking", "fresnel"].contains(key));
+        let (summary, source) = match model.microfacet {
+            // The model's own words are of its own terms.
+            Some(made) if !is_default => (made.ndf.summary, made.ndf.source),
+            _ => (model.summary, model.source),
+        };
         let command = sets.iter().map(|set| format!(" --set {}", quoted(set))).collect::<String>();
         Ok(Self {
-            title: format!("{}: {}", model.name, model.summary),
-            subtitle: fixed.collect::<Vec<_>>().join(", "),
+            title: format!("{}: {summary}", model.name),
+            subtitle: fixed.chain([source.to_owned()]).collect::<Vec<_>>().join("   ·   "),
             name: model.name.into(),
             sitters,
             command: format!("gonio plot {}{command}", model.name),
@@ -214,7 +220,7 @@ impl View {
         let file = path.file_name().unwrap_or_default().to_string_lossy();
         Ok(Self {
             title: format!("{name} of {file}"),
-            subtitle: std::iter::once(lobes).chain(fixed).collect::<Vec<_>>().join(", "),
+            subtitle: std::iter::once(lobes).chain(fixed).collect::<Vec<_>>().join("   ·   "),
             name: name.to_owned(),
             sitters,
             command: String::new(),
@@ -371,7 +377,7 @@ impl Shown<'_> {
             })
         };
         json!({
-            "subject": self.view.name, "title": self.view.title, "fixed": self.view.subtitle,
+            "subject": self.view.name, "title": self.view.title,
             "settings": self.portraits.iter().map(setting).collect::<Vec<_>>(),
         })
     }

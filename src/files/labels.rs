@@ -18,26 +18,35 @@ pub(super) fn write(canvas: &mut Canvas, frame: Frame, lines: &[Named], best: f3
     for (line, points) in lines.iter().zip(&dense).filter(|(_, points)| !points.is_empty()) {
         let (w, h) = (canvas.text_width(line.name, TICK_SIZE), TICK_SIZE);
         let places = points.iter().enumerate().step_by(4).flat_map(|(k, &(x, y))| {
-            let off = 0.5 * h + 4.0;
-            let beside = [
-                (6.0, -0.5 * h),
-                (-6.0 - w, -0.5 * h),
-                (-0.5 * w, -off - 0.5 * h),
-                (-0.5 * w, off - 0.5 * h),
-            ];
-            let diagonal = [(5.0, -h - 2.0), (-5.0 - w, -h - 2.0), (5.0, 2.0), (-5.0 - w, 2.0)];
-            let far = (k as f32 / points.len() as f32 - best).abs();
-            beside
-                .into_iter()
-                .chain(diagonal)
-                .map(move |(dx, dy)| (far, Frame { x: x + dx, y: y + dy, w, h }))
+            let off_best = (k as f32 / points.len() as f32 - best).abs();
+            // Beside the point, close or, where that is not free, farther off.
+            [6.0, 16.0].into_iter().flat_map(move |gap: f32| {
+                let [left, middle, right] = [-gap - w, -0.5 * w, gap];
+                let [above, level, below] = [-0.7 * gap - h, -0.5 * h, 0.7 * gap];
+                let around = [
+                    (right, level),
+                    (left, level),
+                    (middle, above),
+                    (middle, below),
+                    (right, above),
+                    (left, above),
+                    (right, below),
+                    (left, below),
+                ];
+                let place = move |(dx, dy)| (off_best + 0.1 * gap, Frame { x: x + dx, y: y + dy, w, h });
+                around.into_iter().map(place)
+            })
         });
         let cost = |(far, place): &(f32, Frame)| {
             let wide = grown(*place, 3.0);
             let covered = dense.iter().flatten().filter(|&&point| contains(wide, point)).count();
+            // A name between two lines could be either's.
+            let around = grown(*place, 14.0);
+            let others = dense.iter().filter(|other| !std::ptr::eq(*other, points)).flatten();
+            let doubtful = others.filter(|&&point| contains(around, point)).count();
             let names = taken.iter().filter(|other| meet(**other, wide)).count();
             let inside = contains(frame, (place.x, place.y)) && contains(frame, (place.x + w, place.y + h));
-            far + covered as f32 + 1e3 * names as f32 + if inside { 0.0 } else { 1e4 }
+            far + covered as f32 + 0.3 * doubtful as f32 + 1e3 * names as f32 + if inside { 0.0 } else { 1e4 }
         };
         let best = places.map(|place| (cost(&place), place.1)).min_by(|a, b| a.0.total_cmp(&b.0));
         let Some((_, place)) = best else { continue };

@@ -119,7 +119,7 @@ pub(super) fn ticks_below(canvas: &mut Canvas, frame: Frame, scale: &Scale, grid
 }
 
 pub(super) fn ticks_left(canvas: &mut Canvas, frame: Frame, scale: &Scale, grid: bool) {
-    for (value, label) in scale.ticks((frame.h / 44.0) as usize) {
+    for (value, label) in scale.ticks((frame.h / 40.0) as usize) {
         let y = frame.y + (frame.h - 1.0) * (1.0 - scale.at(value) as f32);
         if grid {
             canvas.fill(Frame { x: frame.x, y, w: frame.w, h: 1.0 }, PALE);

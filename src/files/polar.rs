@@ -26,10 +26,10 @@ pub(super) fn radial(peaks: &[f64], log: bool) -> Scale {
     if !log {
         return Scale { range: [0.0, 1.06 * max], kind: Kind::Linear };
     }
-    // The lowest peak has a decade and a half below it to show its shape.
+    // The lowest peak has a decade or two below it to show its shape.
     let least = peaks.iter().copied().filter(|&peak| peak > 0.0).fold(max, f64::min);
-    let decades = ((max / least).log10() + 1.5).ceil().min(8.0);
-    Scale { range: [max * 10f64.powf(-decades), 1.5 * max], kind: Kind::Log }
+    let low = least.max(1e-14 * max).log10() - 1.0;
+    Scale { range: [10f64.powf(low.floor()), 1.5 * max], kind: Kind::Log }
 }
 
 impl Dial {
@@ -51,7 +51,8 @@ impl Dial {
             }
         }
         let mut last = f32::NEG_INFINITY;
-        let ticks = scale.ticks((radius / 46.0) as usize);
+        // Without a lobe there is nothing to measure.
+        let ticks = if label.is_empty() { Vec::new() } else { scale.ticks((radius / 46.0) as usize) };
         for (value, text) in ticks {
             let r = scale.at(value) as f32;
             if r > 1.0 {
@@ -126,7 +127,7 @@ impl Dial {
     /// Lines of text where the lobes would be.
     pub fn say(&self, canvas: &mut Canvas, said: &[(String, Color)]) {
         for (k, (text, color)) in said.iter().enumerate() {
-            let y = self.base - 0.42 * self.radius + 20.0 * (k as f32 - 0.5 * said.len() as f32);
+            let y = self.base - 0.72 * self.radius + 20.0 * (k as f32 - 0.5 * said.len() as f32);
             let width = canvas.text_width(text, TICK_SIZE);
             // Rings and rays stay behind it.
             let paper = Frame { x: self.x - 0.5 * width - 4.0, y: y - 10.0, w: width + 8.0, h: 20.0 };

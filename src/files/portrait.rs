@@ -102,20 +102,29 @@ pub(crate) fn draw(plate: &Plate) -> Result<Picture> {
     Ok(Picture(canvas))
 }
 
-/// What the picture cannot show, in words.
+/// What the picture cannot show, in words, and of which settings.
 fn notes(plate: &Plate) -> Vec<String> {
-    let mut notes = Vec::new();
+    let mut notes: Vec<(String, Vec<&str>)> = Vec::new();
     for Portrait { label, values, has_delta, rho } in plate.portraits {
+        let mut note = |said: String| match notes.iter_mut().find(|(other, _)| *other == said) {
+            Some((_, labels)) => labels.push(label),
+            None => notes.push((said, vec![label])),
+        };
         match values {
-            None => notes.push(format!("{label}: a delta, which has no values; ρ_dh is all there is of it")),
+            None => note("a delta, which has no values: ρ_dh is all there is of it".into()),
             Some(_) if *has_delta => {
-                notes.push(format!("{label}: it has a delta too, which is in ρ_dh and not among the values"));
+                note("it has a delta too, which is in ρ_dh and not among the values".into());
             }
             Some(_) => {}
         }
         if let Err(why) = rho {
-            notes.push(format!("{label}: ρ_dh has no bound ({why})"));
+            note(format!("ρ_dh has no bound ({why})"));
         }
+    }
+    let mut notes: Vec<_> =
+        notes.into_iter().map(|(said, labels)| format!("{}: {said}", labels.join(", "))).collect();
+    if plate.portraits.len() > 1 && !plate.portraits.iter().all(is_grey) {
+        notes.push("Lines and maps are of the luminance of R, G and B (Rec. 709)".into());
     }
     notes
 }
@@ -166,13 +175,14 @@ fn lobes(canvas: &mut Canvas, plate: &Plate, panel: f32, base: f32, radius: f32)
         let lobes = curve.portrait.values.as_ref().map(|values| &values.lobes[k].plane);
         lobes.into_iter().flatten().map(|&(theta, f)| (theta, (curve.of)(f))).collect()
     };
-    let peak = |curve: &Curve| {
-        let all = (0..plate.thetas.len()).flat_map(|k| plane(curve, k)).map(|(_, value)| value);
-        all.filter(|value| value.is_finite()).fold(0.0, f64::max)
+    let largest = |lobe: Vec<(f64, f64)>| {
+        lobe.into_iter().map(|(_, value)| value).filter(|value| value.is_finite()).fold(0.0, f64::max)
     };
-    let peaks: Vec<_> = curves.iter().map(peak).filter(|&peak| peak > 0.0).collect();
-    let [low, high] =
-        [peaks.iter().copied().fold(f64::INFINITY, f64::min), peaks.iter().copied().fold(0.0, f64::max)];
+    let plane = &plane;
+    let each = curves.iter().flat_map(|curve| (0..plate.thetas.len()).map(move |k| plane(curve, k)));
+    let peaks: Vec<_> = each.map(largest).filter(|&peak| peak > 0.0).collect();
+    let low = peaks.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = peaks.iter().copied().fold(0.0, f64::max);
     let log = plate.radius == Radius::Log || plate.radius == Radius::Auto && high > 8.0 * low;
     let scale = polar::radial(&peaks, log);
     for (k, &theta_i) in plate.thetas.iter().enumerate() {
@@ -205,7 +215,7 @@ fn furnace(canvas: &mut Canvas, frame: Frame, plate: &Plate) {
     let max = lines.iter().flatten().map(|&(_, rho)| rho).fold(1.0, f64::max);
     let (x, y) = (
         Scale { range: [0.0, FRAC_PI_2], kind: Kind::Degrees },
-        Scale { range: [0.0, 1.06 * max], kind: Kind::Linear },
+        Scale { range: [0.0, 1.12 * max], kind: Kind::Linear },
     );
     canvas.border(frame, GREY);
     ticks_below(canvas, frame, &x, true);
@@ -216,7 +226,7 @@ fn furnace(canvas: &mut Canvas, frame: Frame, plate: &Plate) {
     };
     let one = at((0.0, 1.0)).1;
     canvas.dashes((frame.x, one), (frame.x + frame.w, one), 1.5, BLACK);
-    canvas.text("1, a white furnace", (frame.x + 8.0, one + 13.0), TICK_SIZE, Align::Left, BLACK);
+    canvas.text("1, a white furnace", (frame.x + 8.0, one - 9.0), TICK_SIZE, Align::Left, BLACK);
 
     let mut named = Vec::new();
     for (curve, line) in curves.iter().zip(lines) {
@@ -239,15 +249,14 @@ fn furnace(canvas: &mut Canvas, frame: Frame, plate: &Plate) {
 fn discs(canvas: &mut Canvas, top: f32, width: f32, plate: &Plate) {
     let columns = plate.thetas.len() + 2;
     let used = LABELS + columns as f32 * DISC + BAR_ROOM;
-    let gap = ((width - 48.0 - used) / columns as f32).min(70.0);
+    let gap = ((width - 48.0 - used) / (columns as f32 - 0.5)).min(130.0);
     let column = |k: usize| {
         let bar = if k >= plate.thetas.len() { BAR_ROOM } else { 0.0 };
         24.0 + LABELS + bar + k as f32 * (DISC + gap)
     };
     let values = plate.portraits.iter().filter_map(|portrait| portrait.values.as_ref());
     let has_values = values.clone().next().is_some();
-    let hemispheres = values.flat_map(|values| &values.lobes).flat_map(|lobes| &lobes.hemisphere);
-    let scale = Scale::of_values(hemispheres.map(|f| luminance(f.map(f64::from))), true);
+    let scale = colors(values.flat_map(|values| &values.lobes).map(|lobes| &lobes.hemisphere[..]));
     let exposure = exposure(plate);
 
     let mut heading = |k: usize, lines: [&str; 2]| {
@@ -297,6 +306,27 @@ fn discs(canvas: &mut Canvas, top: f32, width: f32, plate: &Plate) {
     x += 56.0;
     cross(canvas, (x + 6.0, y), false);
     canvas.text("mirror direction", (x + 18.0, y), TICK_SIZE, Align::Left, BLACK);
+}
+
+/// The scale of f over all hemispheres: down to the least median of any, so that the narrow lobe does not
+/// take all of it from the wide one, over twelve decades at most.
+fn colors<'a>(hemispheres: impl Iterator<Item = &'a [[f32; 3]]>) -> Scale {
+    let (mut all, mut low) = (Vec::new(), f64::INFINITY);
+    for hemisphere in hemispheres {
+        let f = hemisphere.iter().map(|f| luminance(f.map(f64::from)));
+        let mut f: Vec<_> = f.filter(|f| f.is_finite()).collect();
+        let middle = f.len() / 2;
+        if middle > 0 {
+            low = low.min(*f.select_nth_unstable_by(middle, f64::total_cmp).1);
+        }
+        all.extend(f);
+    }
+    let mut scale = Scale::of_values(all.iter().copied(), true);
+    if scale.kind == Kind::Log {
+        let high = scale.range[1];
+        scale.range[0] = low.clamp(1e-12 * high, 0.1 * high);
+    }
+    scale
 }
 
 /// Room for the colour bar with its labels.
