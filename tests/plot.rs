@@ -59,12 +59,12 @@ impl Svg {
             match reader.read_event().unwrap() {
                 Event::Start(e) => {
                     said.clear();
-                    open.push((e.name().as_ref().to_vec(), attributes(&e)));
+                    open.push((e.name().as_ref().to_owned(), attributes(&e)));
                 }
                 Event::Empty(e) => drop(attributes(&e)),
-                Event::Text(text) => said += &text.decode().unwrap(),
+                Event::Text(text) => said += &text,
                 Event::GeneralRef(name) => {
-                    said += match &*name.decode().unwrap() {
+                    said += match &*name {
                         "amp" => "&",
                         "lt" => "<",
                         "gt" => ">",
@@ -81,13 +81,13 @@ impl Svg {
         svg
     }
 
-    fn close(&mut self, element: (Vec<u8>, Attributes), said: &str, parent: Option<&(Vec<u8>, Attributes)>) {
+    fn close(&mut self, element: (String, Attributes), said: &str, parent: Option<&(String, Attributes)>) {
         let (name, attributes) = element;
         let number = |of: &Attributes, key: &str| of[key].parse::<f64>().unwrap();
         match &name[..] {
-            b"svg" => self.size = ["width", "height"].map(|key| number(&attributes, key)),
-            b"text" => self.texts.push((["x", "y"].map(|key| number(&attributes, key)), said.into())),
-            b"title" => {
+            "svg" => self.size = ["width", "height"].map(|key| number(&attributes, key)),
+            "text" => self.texts.push((["x", "y"].map(|key| number(&attributes, key)), said.into())),
+            "title" => {
                 let of = &parent.unwrap().1;
                 let (png, _) = DataUrl::process(&of["href"]).unwrap().decode_to_vec().unwrap();
                 let pixels = image::load_from_memory(&png).unwrap().to_rgb8();
@@ -113,8 +113,7 @@ impl Svg {
 type Attributes = BTreeMap<String, String>;
 
 fn attributes(e: &quick_xml::events::BytesStart) -> Attributes {
-    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-    e.attributes().map(Result::unwrap).map(|a| (text(a.key.as_ref()), text(&a.value))).collect()
+    e.attributes().map(Result::unwrap).map(|a| (a.key.as_ref().to_owned(), a.value.into_owned())).collect()
 }
 
 /// IEC 61966-2-1, of linear light, in steps of 8 bits.

@@ -38,6 +38,9 @@ Exit codes: 0 success, 1 ρ_dh misses its tolerance, 2 bad input, 3 no device, 1
 /// Light comes in at 45°.
 const THETAS: [f64; 1] = [FRAC_PI_4];
 
+/// The same to be read by a browser and by people.
+const PAGES: [&str; 2] = ["index.html", "gallery.md"];
+
 /// A picture and what is said beside it.
 struct Entry {
     stem: String,
@@ -53,6 +56,12 @@ pub fn run(args: &Args) -> Result<()> {
     let (evaluator, line) = Evaluator::choose(&args.device)?;
     print_beside(args.json, &format!("{HEADING}device{HEADING:#}  {line}"))?;
     let mut set = TableSet::create(&args.out)?;
+    // Before the work, not after it.
+    entries
+        .iter()
+        .flat_map(Entry::files)
+        .chain(PAGES.map(String::from))
+        .try_for_each(|name| set.refuse_foreign(&name))?;
     let watch = Watch::new(entries.iter().map(|entry| entry.view.steps()).sum::<usize>());
     let manifest = write(&mut set, &entries, &evaluator, &watch);
     watch.finish();
@@ -125,14 +134,16 @@ fn write(
     for entry in entries {
         let shown = entry.view.show(&THETAS, Radius::Auto, evaluator, observer)?;
         let svg = shown.picture.to_svg()?;
-        add(format!("{}.png", entry.stem), &shown.picture.to_png()?)?;
-        add(format!("{}.svg", entry.stem), svg.as_bytes())?;
+        let [png_name, svg_name] = entry.files();
+        add(png_name, &shown.picture.to_png()?)?;
+        add(svg_name, svg.as_bytes())?;
         html += &section(entry, &svg);
         markdown += &chapter(entry);
         pictures.push(json!({ "name": entry.stem, "command": entry.command(), "shows": shown.to_json() }));
     }
-    add("index.html".into(), (html + "</main>\n</html>\n").as_bytes())?;
-    add("gallery.md".into(), markdown.as_bytes())?;
+    let [page, text] = PAGES.map(String::from);
+    add(page, (html + "</main>\n</html>\n").as_bytes())?;
+    add(text, markdown.as_bytes())?;
     Ok(json!({
         "schema": 1, "kind": "gallery", "gonio": { "version": env!("CARGO_PKG_VERSION") },
         "device": device_json(evaluator), "pictures": pictures, "files": files,
@@ -140,6 +151,11 @@ fn write(
 }
 
 impl Entry {
+    /// Its picture, twice.
+    fn files(&self) -> [String; 2] {
+        ["png", "svg"].map(|extension| format!("{}.{extension}", self.stem))
+    }
+
     fn command(&self) -> String {
         format!("{} --out {}.png", self.view.command, self.stem)
     }

@@ -11,9 +11,17 @@ pub(super) struct Named<'a> {
 }
 
 /// Writes each name beside its own line, within the frame: of many places the one that covers the fewest
-/// points of lines and no other name. A place nearer to `best`, a share of the line's length, wins a tie.
-pub(super) fn write(canvas: &mut Canvas, frame: Frame, lines: &[Named], best: f32) {
+/// points of lines and of `others`, and no other name. A place nearer to `best`, a share of the line's length,
+/// wins a tie.
+pub(super) fn write(
+    canvas: &mut Canvas,
+    frame: Frame,
+    lines: &[Named],
+    others: &[[(f32, f32); 2]],
+    best: f32,
+) {
     let dense: Vec<_> = lines.iter().map(|line| resampled(&line.points)).collect();
+    let others: Vec<_> = others.iter().flat_map(|line| resampled(line)).collect();
     let mut taken: Vec<Frame> = Vec::new();
     for (line, points) in lines.iter().zip(&dense).filter(|(_, points)| !points.is_empty()) {
         let (w, h) = (canvas.text_width(line.name, TICK_SIZE), TICK_SIZE);
@@ -39,11 +47,12 @@ pub(super) fn write(canvas: &mut Canvas, frame: Frame, lines: &[Named], best: f3
         });
         let cost = |(far, place): &(f32, Frame)| {
             let wide = grown(*place, 3.0);
-            let covered = dense.iter().flatten().filter(|&&point| contains(wide, point)).count();
+            let covered =
+                dense.iter().flatten().chain(&others).filter(|&&point| contains(wide, point)).count();
             // A name between two lines could be either's.
             let around = grown(*place, 14.0);
-            let others = dense.iter().filter(|other| !std::ptr::eq(*other, points)).flatten();
-            let doubtful = others.filter(|&&point| contains(around, point)).count();
+            let neighbours = dense.iter().filter(|other| !std::ptr::eq(*other, points)).flatten();
+            let doubtful = neighbours.filter(|&&point| contains(around, point)).count();
             let names = taken.iter().filter(|other| meet(**other, wide)).count();
             let inside = contains(frame, (place.x, place.y)) && contains(frame, (place.x + w, place.y + h));
             far + covered as f32 + 0.3 * doubtful as f32 + 1e3 * names as f32 + if inside { 0.0 } else { 1e4 }

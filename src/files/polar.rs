@@ -3,7 +3,7 @@
 use super::canvas::{Align, BLACK, Canvas, Color, Frame, GREY, PALE};
 use super::labels::{self, Named};
 use super::panel::{LABEL_SIZE, TICK_SIZE};
-use super::scale::{Kind, Scale, short};
+use super::scale::{Kind, Scale, power_of_ten};
 use std::f32::consts::PI;
 
 /// A half disc: its middle and its radius.
@@ -75,10 +75,11 @@ impl Dial {
         let (wi, mirror) = (self.at(-theta_i, 1.0), self.at(theta_i, 1.0));
         canvas.dashes((x, base), mirror, 1.2, GREY);
         canvas.line(&[wi, (x, base)], 1.6, BLACK);
+        // Light comes in; beyond most lobes, so that none hides the head.
+        let head = self.at(-theta_i, 0.6);
         for side in [-0.35, 0.35] {
-            // Light comes in: the head is at the surface, pointing down the ray.
             let (sin, cos) = (-theta_i as f32 + side).sin_cos();
-            canvas.line(&[(x, base), (x + 13.0 * sin, base - 13.0 * cos)], 1.6, BLACK);
+            canvas.line(&[head, (head.0 + 13.0 * sin, head.1 - 13.0 * cos)], 1.6, BLACK);
         }
         if theta_i < 0.16 {
             self.outside(canvas, 0.0, "ωi, mirror", LABEL_SIZE, BLACK);
@@ -100,7 +101,7 @@ impl Dial {
     }
 
     /// The lobes, with their names if there are several.
-    pub fn lobes(&self, canvas: &mut Canvas, scale: &Scale, lobes: &[Lobe]) {
+    pub fn lobes(&self, canvas: &mut Canvas, scale: &Scale, theta_i: f64, lobes: &[Lobe]) {
         let mut lines = Vec::new();
         for (name, color, lobe) in lobes {
             let points = lobe.iter().filter(|(_, value)| value.is_finite());
@@ -115,12 +116,9 @@ impl Dial {
         }
         if lines.len() > 1 {
             let Self { x, base, radius } = *self;
-            labels::write(
-                canvas,
-                Frame { x: x - radius, y: base - radius, w: 2.0 * radius, h: radius - 4.0 },
-                &lines,
-                0.5,
-            );
+            let frame = Frame { x: x - radius, y: base - radius, w: 2.0 * radius, h: radius - 4.0 };
+            let rays = [-theta_i, theta_i].map(|theta| [(x, base), self.at(theta, 1.0)]);
+            labels::write(canvas, frame, &lines, &rays, 0.5);
         }
     }
 
@@ -149,10 +147,13 @@ pub(super) fn thinned(points: &[(f32, f32)]) -> Vec<(f32, f32)> {
     kept
 }
 
-/// "f cos θe [sr⁻¹], logarithmic radius from 1e-3".
+/// "f cos θe [sr⁻¹], logarithmic from 10⁻³".
 pub(super) fn axis_label(scale: &Scale) -> String {
     match scale.kind {
-        Kind::Log => format!("f cos θe [sr⁻¹], logarithmic from {}", short(scale.range[0])),
+        Kind::Log => {
+            let from = power_of_ten(scale.range[0].log10().round() as i32);
+            format!("f cos θe [sr⁻¹], logarithmic from {from}")
+        }
         _ => "f cos θe [sr⁻¹], linear".into(),
     }
 }

@@ -192,7 +192,12 @@ fn lobes(canvas: &mut Canvas, plate: &Plate, panel: f32, base: f32, radius: f32)
         let label = if peaks.is_empty() { String::new() } else { polar::axis_label(&scale) };
         dial.draw(canvas, &scale, theta_i, &label);
         let shown = curves.iter().filter(|curve| curve.portrait.values.is_some());
-        dial.lobes(canvas, &scale, &shown.map(|c| (c.name, c.color, plane(c, k))).collect::<Vec<_>>());
+        dial.lobes(
+            canvas,
+            &scale,
+            theta_i,
+            &shown.map(|c| (c.name, c.color, plane(c, k))).collect::<Vec<_>>(),
+        );
         let deltas = curves.iter().filter(|curve| curve.portrait.values.is_none());
         let said = deltas.map(|curve| {
             let rho = curve.portrait.rho.as_ref().map_or(f64::INFINITY, |rho| (curve.of)(rho.at(theta_i)));
@@ -226,7 +231,10 @@ fn furnace(canvas: &mut Canvas, frame: Frame, plate: &Plate) {
     };
     let one = at((0.0, 1.0)).1;
     canvas.dashes((frame.x, one), (frame.x + frame.w, one), 1.5, BLACK);
-    canvas.text("1, a white furnace", (frame.x + 8.0, one - 9.0), TICK_SIZE, Align::Left, BLACK);
+    let (said, x) = ("1, a white furnace", frame.x + 8.0);
+    canvas.text(said, (x, one - 9.0), TICK_SIZE, Align::Left, BLACK);
+    let right = x + canvas.text_width(said, TICK_SIZE);
+    let others = [[(frame.x, one), (frame.x + frame.w, one)], [(x, one - 9.0), (right, one - 9.0)]];
 
     let mut named = Vec::new();
     for (curve, line) in curves.iter().zip(lines) {
@@ -235,7 +243,7 @@ fn furnace(canvas: &mut Canvas, frame: Frame, plate: &Plate) {
         named.push(Named { name: curve.name, color: curve.color, points });
     }
     if named.len() > 1 {
-        labels::write(canvas, Frame { x: frame.x + 2.0, w: frame.w - 4.0, ..frame }, &named, 0.45);
+        labels::write(canvas, Frame { x: frame.x + 2.0, w: frame.w - 4.0, ..frame }, &named, &others, 0.45);
     }
     let unbounded = curves.iter().filter(|curve| curve.portrait.rho.is_err());
     for (k, curve) in unbounded.enumerate() {
@@ -308,23 +316,23 @@ fn discs(canvas: &mut Canvas, top: f32, width: f32, plate: &Plate) {
     canvas.text("mirror direction", (x + 18.0, y), TICK_SIZE, Align::Left, BLACK);
 }
 
-/// The scale of f over all hemispheres: down to the least median of any, so that the narrow lobe does not
-/// take all of it from the wide one, over twelve decades at most.
+/// The scale of f over all hemispheres: down to what 95 % of each exceed, over sixteen decades at most, so
+/// that a narrow lobe leaves some of it to a wide one.
 fn colors<'a>(hemispheres: impl Iterator<Item = &'a [[f32; 3]]>) -> Scale {
     let (mut all, mut low) = (Vec::new(), f64::INFINITY);
     for hemisphere in hemispheres {
         let f = hemisphere.iter().map(|f| luminance(f.map(f64::from)));
         let mut f: Vec<_> = f.filter(|f| f.is_finite()).collect();
-        let middle = f.len() / 2;
-        if middle > 0 {
-            low = low.min(*f.select_nth_unstable_by(middle, f64::total_cmp).1);
+        let place = f.len() / 20;
+        if place > 0 {
+            low = low.min(*f.select_nth_unstable_by(place, f64::total_cmp).1);
         }
         all.extend(f);
     }
     let mut scale = Scale::of_values(all.iter().copied(), true);
     if scale.kind == Kind::Log {
         let high = scale.range[1];
-        scale.range[0] = low.clamp(1e-12 * high, 0.1 * high);
+        scale.range[0] = low.clamp(1e-16 * high, 0.1 * high);
     }
     scale
 }

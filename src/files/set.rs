@@ -222,7 +222,8 @@ impl TableSet {
         stem
     }
 
-    fn refuse_foreign(&self, name: &str) -> Result<()> {
+    /// Refuses a name that a file has which is not of the old set.
+    pub(crate) fn refuse_foreign(&self, name: &str) -> Result<()> {
         let path = self.dir.join(name);
         if path.symlink_metadata().is_err() || self.old.iter().any(|old| old.name == name) {
             return Ok(());
