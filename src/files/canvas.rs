@@ -157,7 +157,9 @@ impl Canvas {
 
     /// Writes a text of `size`, from ascent to descent.
     pub fn text(&mut self, text: &str, at: (f32, f32), size: f32, align: Align, color: Color) {
-        self.marks.push(Mark::Text { text: text.to_owned(), at, size, align, color });
+        if !text.is_empty() {
+            self.marks.push(Mark::Text { text: text.to_owned(), at, size, align, color });
+        }
     }
 
     /// The width of a text of `size`.

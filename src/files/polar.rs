@@ -117,8 +117,10 @@ impl Dial {
         if lines.len() > 1 {
             let Self { x, base, radius } = *self;
             let frame = Frame { x: x - radius, y: base - radius, w: 2.0 * radius, h: radius - 4.0 };
-            let rays = [-theta_i, theta_i].map(|theta| [(x, base), self.at(theta, 1.0)]);
-            labels::write(canvas, frame, &lines, &rays, 0.5);
+            let [wi, mirror] = [-theta_i, theta_i].map(|theta| self.at(theta, 1.0));
+            // The rays, and the name of the mirror direction beyond the rim.
+            let name = [(mirror.0, mirror.1 - 8.0), (mirror.0 + 50.0, mirror.1 - 8.0)];
+            labels::write(canvas, frame, &lines, &[[(x, base), wi], [(x, base), mirror], name], 0.5);
         }
     }
 
