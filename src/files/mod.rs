@@ -2,6 +2,8 @@
 //! values at them.
 
 mod atlas;
+// SVG, and some of what is drawn, is for the command alone.
+#[cfg_attr(not(feature = "cli"), allow(dead_code))]
 mod canvas;
 mod colormap;
 mod entry;
@@ -20,10 +22,12 @@ mod png;
 mod polar;
 #[cfg(feature = "cli")]
 mod portrait;
+#[cfg_attr(not(feature = "cli"), allow(dead_code))]
 mod raster;
 mod scale;
 mod set;
 mod stream;
+#[cfg_attr(not(feature = "cli"), allow(dead_code))]
 mod svg;
 mod tradeoff;
 
