@@ -45,8 +45,9 @@ pub fn material<'a>(
     sets: impl IntoIterator<Item = (&'a str, &'a str)>,
 ) -> Result<Scene> {
     let number = |(key, value): (&str, &str)| {
-        let value =
-            value.parse().map_err(|_| Error::input(format!("--set {key}={value}: \"{value}\" is no number")));
+        let value = value.parse().map_err(|_| {
+            Error::input(format!("--set {key}={value}: \"{value}\" is no number; give one, as in {key}=0.3"))
+        });
         Ok((key.to_owned(), value?))
     };
     let setting = sets.into_iter().map(number).collect::<Result<Vec<_>>>()?;
