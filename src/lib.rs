@@ -25,6 +25,7 @@
 //! | [`trade`] | every method at every cost: time and error, and the front | files, devices |
 //! | [`atlas`] | what f32 loses against f64, by model and decade of α; the published forms of GGX | how values are computed |
 //! | [`bake`] | the order of it all: evaluate, look, check, write | how any of it is done |
+//! | `portrait` | what a picture of a BRDF shows: lobes, lit spheres, ρ_dh | how it is drawn |
 //! | [`points`] | values at any list of pairs of directions, unlooked at | tables, files |
 //! | [`table`], [`axis`], [`quantity`], [`storage`], [`setting`] | what a table is | where it came from |
 //! | `interpolation`, `optimise` | what a bilinear reader gets, and the cheapest table for it | devices |
@@ -83,6 +84,8 @@ mod optimise;
 pub mod pair;
 pub mod plan;
 pub mod points;
+#[cfg(feature = "cli")]
+mod portrait;
 pub mod promises;
 pub mod quadrature;
 pub mod quantity;

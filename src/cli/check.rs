@@ -15,6 +15,7 @@ use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use targets::Target;
+pub(super) use targets::quoted;
 
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]

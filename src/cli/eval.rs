@@ -3,14 +3,14 @@
 mod many;
 mod one;
 
+use super::subject;
 use crate::axis::{Axis, Variable};
 use crate::error::{Error, Result};
 use crate::gpu::DeviceChoice;
-use crate::models;
 use crate::plan::TablePlan;
 use crate::points::Angles;
 use crate::quantity::BRDF;
-use crate::scene::{self, Scene};
+use crate::scene;
 use std::f64::consts::PI;
 use std::path::PathBuf;
 
@@ -105,48 +105,17 @@ fn subject(args: &Args, angles: &Angles) -> Result<TablePlan> {
         // The models do not tell left from right.
         Axis::listed(Variable::DeltaPhi, vec![angles.delta_phi().abs()])?,
     ];
+    let sets = args.set.iter().map(|set| subject::key_value(set)).collect::<Result<Vec<_>>>()?;
     let (scene, name) = match (&args.scene, &args.material, &args.model) {
-        (Some(path), Some(name), _) => (pinned(scene::read(path)?, name, &args.set)?, name.clone()),
+        (Some(path), Some(name), _) => (subject::material(scene::read(path)?, name, sets)?, name.clone()),
         (_, _, Some(model)) => {
-            let model = models::find(model)?.name;
-            let mut lobe = format!("model = \"{model}\"");
-            for set in &args.set {
-                let (key, value) = set.split_once('=').ok_or_else(|| {
-                    Error::input(format!("--set {set}: give KEY=VALUE, as in --set roughness=0.3"))
-                })?;
-                lobe += &format!(", {key} = {}", toml(value));
-            }
-            let text = format!("[materials.{model}]\nlobes = [{{ {lobe} }}]\n");
-            let mut scene = scene::parse_recipe("--set".as_ref(), text.as_bytes())?;
-            // By the name that tells the terms.
-            let name = scene.materials[0].lobes[0].model.clone();
-            scene.materials[0].name.clone_from(&name);
+            let scene = subject::model(model, sets)?;
+            let name = scene.materials[0].name.clone();
             (scene, name)
         }
         _ => return Err(Error::input("give --model NAME, or a SCENE and --material NAME")),
     };
     TablePlan::material("eval", &BRDF, &scene, &name, axes)
-}
-
-/// A value as TOML: a word needs no quotes on a command line.
-fn toml(value: &str) -> String {
-    let is_word = !matches!(value, "nan" | "inf" | "true" | "false")
-        && value.starts_with(|c: char| c.is_ascii_alphabetic())
-        && value.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_');
-    if is_word { format!("\"{value}\"") } else { value.to_owned() }
-}
-
-/// The scene, its material at one setting of what varies in it.
-fn pinned(mut scene: Scene, name: &str, sets: &[String]) -> Result<Scene> {
-    let setting = sets.iter().map(|set| {
-        let pair = set.split_once('=').and_then(|(key, value)| Some((key.into(), value.parse().ok()?)));
-        pair.ok_or_else(|| Error::input(format!("--set {set}: give KEY=VALUE, as in --set roughness=0.3")))
-    });
-    let setting = setting.collect::<Result<Vec<_>>>()?;
-    if let Some(material) = scene.materials.iter_mut().find(|material| material.name == name) {
-        *material = material.at(&setting)?;
-    }
-    Ok(scene)
 }
 
 /// Whether a value keeps what every BRDF promises.

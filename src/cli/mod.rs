@@ -5,8 +5,11 @@ mod bake;
 mod check;
 mod devices;
 mod eval;
+mod gallery;
 mod junit;
 mod models;
+mod plot;
+mod subject;
 mod trade;
 mod watch;
 
@@ -35,6 +38,10 @@ enum Command {
     Check(check::Args),
     /// Measure what f32 loses against f64: by model, by decade of α, and where it is worst
     Atlas(atlas::Args),
+    /// Draw a BRDF at one or several settings: its lobe, lit spheres, its reflectance
+    Plot(plot::Args),
+    /// Make a page with a picture of every model
+    Gallery(gallery::Args),
     /// Measure time against error: every method at every cost
     Trade(trade::Args),
     /// List the models and the parts that they are made of, or one in detail
@@ -49,6 +56,8 @@ Examples:
   gonio eval --model ggx --set roughness=0.3 --theta-i 45deg --theta-e 45deg
   gonio check --wgsl brdf.wgsl --entry brdf --set roughness=0.05..1
   gonio atlas --out atlas
+  gonio plot ggx --set roughness=0.1,0.3,0.6 --out ggx.png
+  gonio gallery --out gallery
   gonio trade --quantity split_sum --model ggx --out trade
   gonio models ggx
   gonio devices
@@ -69,6 +78,8 @@ pub fn main() -> ExitCode {
         Command::Eval(args) => eval::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Atlas(args) => atlas::run(&args),
+        Command::Plot(args) => plot::run(&args),
+        Command::Gallery(args) => gallery::run(&args),
         Command::Trade(args) => trade::run(&args),
         Command::Models(args) => models::run(&args),
         Command::Devices(args) => devices::run(&args),

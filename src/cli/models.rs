@@ -25,13 +25,13 @@ Examples:
 Exit codes: 0 success, 2 no such model";
 
 /// A parameter, in the words of recipes and of --set.
-struct Parameter {
-    name: &'static str,
-    range: String,
+pub(super) struct Parameter {
+    pub name: &'static str,
+    pub range: String,
     unit: &'static str,
     /// None: it must be given.
-    default: Option<String>,
-    what: String,
+    pub default: Option<String>,
+    pub what: String,
 }
 
 pub fn run(args: &Args) -> Result<()> {
@@ -85,7 +85,8 @@ fn one(model: &Model, as_json: bool) -> Result<()> {
 
 const DIMENSIONLESS: &str = "dimensionless";
 
-fn parameters(model: &Model) -> Vec<Parameter> {
+/// What a model takes.
+pub(super) fn parameters(model: &Model) -> Vec<Parameter> {
     let mut all = Vec::new();
     if let Some(Shape { name, summary, unit, most, least, .. }) = model.shape {
         let values = if least > 0.0 { format!("; values from {name} = {least:e}") } else { String::new() };
@@ -130,7 +131,26 @@ fn parameters(model: &Model) -> Vec<Parameter> {
     all
 }
 
-fn promises(model: &Model) -> Vec<String> {
+/// Three settings that show what a model does, as `--set` has them: its roughness, or else what weighs it.
+pub(super) fn settings(model: &Model) -> Vec<String> {
+    let mut sets = Vec::new();
+    if let Some(shape) = model.shape {
+        // Diffuse lobes differ little below the largest.
+        let roughness = if shape.least > 0.0 { "0.1,0.3,0.6" } else { "0,0.5,1" };
+        sets.push(format!("roughness={roughness}"));
+    }
+    for component in model.components {
+        match (sets.is_empty(), component.default) {
+            (true, _) => sets.push(format!("{}=0.2,0.5,0.8", component.weight)),
+            (false, None) => sets.push(format!("{}=0.8", component.weight)),
+            (false, Some(_)) => {}
+        }
+    }
+    sets
+}
+
+/// What a model keeps, and what it is known to break.
+pub(super) fn promises(model: &Model) -> Vec<String> {
     let mut promises = vec!["finite, not negative, reciprocal, isotropic".to_owned()];
     promises.push(match model.integral {
         Integral::Unbounded(why) => format!("no energy bound: {why}"),

@@ -1,6 +1,6 @@
 //! The pictures of the error atlas: error against α and over the hemispheres; and the study's forms.
 
-use super::canvas::{Align, BLACK, Canvas, Color, Frame, GREY};
+use super::canvas::{Align, BLACK, Canvas, Color, Frame, GREY, Pixels};
 use super::colormap::viridis;
 use super::panel::{BELOW, LABEL_SIZE, LEFT, axis_labels, color_bar, ticks_below, ticks_left};
 use super::scale::{Kind, Scale, short};
@@ -50,7 +50,7 @@ pub(crate) fn draw_page(page: &Page) -> Result<Vec<u8>> {
     if let Some(map) = &page.map {
         hemispheres(&mut canvas, right, map);
     }
-    canvas.into_png()
+    canvas.to_png(1)
 }
 
 /// The largest error and where it is.
@@ -150,14 +150,14 @@ fn hemispheres(canvas: &mut Canvas, frame: Frame, map: &Map) {
     let scale = Scale { range: [0.0, if max > 0.0 { 1e6 * max } else { 1.0 }], kind: Kind::Linear };
     let count = map.thetas.len();
     let cell = |u: f32| ((u * (count - 1) as f32).round() as usize).min(count - 1);
-    for py in 0..frame.h as i32 {
-        for px in 0..frame.w as i32 {
-            let (i, e) = (cell(px as f32 / frame.w), cell(1.0 - py as f32 / frame.h));
-            let error = map.errors[i][e];
-            let color = if error.is_finite() { viridis(scale.at(1e6 * error)) } else { [255, 0, 0] };
-            canvas.mix(frame.x as i32 + px, frame.y as i32 + py, color, 1.0);
-        }
-    }
+    let (width, height) = (frame.w as usize, frame.h as usize);
+    let color = |k: usize| {
+        let (px, py) = ((k % width) as f32, (k / width) as f32);
+        let error = map.errors[cell(px / frame.w)][cell(1.0 - py / frame.h)];
+        if error.is_finite() { viridis(scale.at(1e6 * error)) } else { [255, 0, 0] }
+    };
+    let pixels = Pixels { width, colors: (0..width * height).map(color).collect() };
+    canvas.image(frame, pixels, "largest error over θi and θe");
     canvas.border(frame, GREY);
     let degrees = Scale { range: [0.0, FRAC_PI_2], kind: Kind::Degrees };
     ticks_below(canvas, frame, &degrees, false);
@@ -213,5 +213,5 @@ pub(crate) fn draw_study(forms: &[Page]) -> Result<Vec<u8>> {
         canvas.text(&form.subject, (x + 30.0, y), LABEL_SIZE, Align::Left, BLACK);
         y += 28.0;
     }
-    canvas.into_png()
+    canvas.to_png(1)
 }

@@ -1,9 +1,10 @@
-//! A small RGB canvas: filled rectangles, smooth lines and text.
+//! A drawing: fills, lines, discs, images and text, as a list of marks. Two back ends make files of it:
+//! [`raster`](super::raster) a PNG and [`svg`](super::svg) an SVG.
 
+use super::{raster, svg};
 use crate::error::{Error, Result};
-use ab_glyph::{Font, FontRef, PxScale, ScaleFont, point};
+use ab_glyph::{Font, FontRef, PxScale, ScaleFont};
 use epaint_default_fonts::{HACK_REGULAR, UBUNTU_LIGHT};
-use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 
 /// Red, green, blue; sRGB.
 pub(super) type Color = [u8; 3];
@@ -11,8 +12,9 @@ pub(super) type Color = [u8; 3];
 pub(super) const BLACK: Color = [16; 3];
 pub(super) const GREY: Color = [96; 3];
 pub(super) const PALE: Color = [224; 3];
+pub(super) const WHITE: Color = [255; 3];
 
-/// A rectangle in pixels; y points down.
+/// A rectangle; y points down.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame {
     pub x: f32,
@@ -31,64 +33,83 @@ pub(super) enum Align {
     Turned,
 }
 
-/// An image under construction.
-pub(super) struct Canvas {
-    width: usize,
-    height: usize,
-    pixels: Vec<u8>,
-    /// In the order of preference: the first font that has a glyph draws it.
-    fonts: [FontRef<'static>; 2],
+/// Pixels, row by row from the top.
+#[derive(Debug, Clone)]
+pub(super) struct Pixels {
+    pub width: usize,
+    pub colors: Vec<Color>,
 }
 
+/// Something drawn. Later marks lie over earlier ones.
+pub(super) enum Mark {
+    Fill(Frame, Color),
+    /// A line through points, with round ends and corners.
+    Line {
+        points: Vec<(f32, f32)>,
+        width: f32,
+        color: Color,
+    },
+    Disc {
+        center: (f32, f32),
+        radius: f32,
+        color: Color,
+    },
+    /// Pixels over a frame, and what they show.
+    Image {
+        frame: Frame,
+        pixels: Pixels,
+        title: String,
+    },
+    Text {
+        text: String,
+        at: (f32, f32),
+        size: f32,
+        align: Align,
+        color: Color,
+    },
+}
+
+/// A drawing under way, on white. Its unit is a pixel of a PNG at scale 1.
+pub(super) struct Canvas {
+    pub size: (usize, usize),
+    pub marks: Vec<Mark>,
+    pub fonts: Fonts,
+}
+
+/// In the order of preference: the first font that has a glyph draws it.
+pub(super) struct Fonts([FontRef<'static>; 2]);
+
 impl Canvas {
-    /// A white canvas.
+    /// An empty drawing.
     pub fn new(width: usize, height: usize) -> Result<Self> {
         let font = |bytes| {
             FontRef::try_from_slice(bytes).map_err(|error| Error::Internal(format!("built-in font: {error}")))
         };
-        let pixels = vec![255; width * height * 3];
-        Ok(Self { width, height, pixels, fonts: [font(UBUNTU_LIGHT)?, font(HACK_REGULAR)?] })
+        let fonts = Fonts([font(UBUNTU_LIGHT)?, font(HACK_REGULAR)?]);
+        Ok(Self { size: (width, height), marks: Vec::new(), fonts })
     }
 
-    /// Pixels in a row.
+    /// Its width.
     pub fn width(&self) -> usize {
-        self.width
+        self.size.0
     }
 
-    /// The bytes of a PNG file; no times in it.
-    pub fn into_png(self) -> Result<Vec<u8>> {
-        let (width, height) = (self.width as u32, self.height as u32);
-        let mut png = Vec::new();
-        PngEncoder::new(&mut png)
-            .write_image(&self.pixels, width, height, ExtendedColorType::Rgb8)
-            .map_err(|error| Error::Internal(format!("PNG: {error}")))?;
-        Ok(png)
+    /// The bytes of a PNG file with `scale` pixels to a unit; no times in it.
+    pub fn to_png(&self, scale: usize) -> Result<Vec<u8>> {
+        raster::encode(self, scale)
     }
 
-    /// Mixes a colour into one pixel; outside the canvas nothing happens.
-    pub fn mix(&mut self, x: i32, y: i32, color: Color, coverage: f32) {
-        let (Ok(x), Ok(y)) = (usize::try_from(x), usize::try_from(y)) else { return };
-        if x >= self.width || y >= self.height {
-            return;
-        }
-        let at = (y * self.width + x) * 3;
-        for (old, new) in self.pixels[at..at + 3].iter_mut().zip(color) {
-            let mixed = f32::from(*old) + (f32::from(new) - f32::from(*old)) * coverage.clamp(0.0, 1.0);
-            *old = mixed.round() as u8;
-        }
+    /// The text of an SVG file. Nothing in it has a name, so that a page may hold several.
+    pub fn to_svg(&self) -> Result<String> {
+        svg::encode(self)
     }
 
     /// Fills a rectangle, to whole pixels.
     pub fn fill(&mut self, frame: Frame, color: Color) {
-        let Frame { x, y, w, h } = frame;
-        for row in y.round() as i32..(y + h).round() as i32 {
-            for column in x.round() as i32..(x + w).round() as i32 {
-                self.mix(column, row, color, 1.0);
-            }
-        }
+        self.marks.push(Mark::Fill(frame, color));
     }
 
-    /// Draws the border of a rectangle, one pixel wide, around its inside.
+    /// Draws the border of a rectangle, a unit wide, around its inside.
     pub fn border(&mut self, Frame { x, y, w, h }: Frame, color: Color) {
         self.fill(Frame { x: x - 1.0, y: y - 1.0, w: w + 2.0, h: 1.0 }, color);
         self.fill(Frame { x: x - 1.0, y: y + h, w: w + 2.0, h: 1.0 }, color);
@@ -96,65 +117,54 @@ impl Canvas {
         self.fill(Frame { x: x + w, y: y - 1.0, w: 1.0, h: h + 2.0 }, color);
     }
 
-    /// Draws a line through the points, `width` pixels wide, with smooth edges.
+    /// Draws a line through the points, `width` wide.
     pub fn line(&mut self, points: &[(f32, f32)], width: f32, color: Color) {
-        for pair in points.windows(2) {
-            self.segment(pair[0], pair[1], width / 2.0, color);
+        if points.len() > 1 {
+            self.marks.push(Mark::Line { points: points.to_vec(), width, color });
         }
+    }
+
+    /// Draws a straight line in dashes.
+    pub fn dashes(&mut self, (ax, ay): (f32, f32), (bx, by): (f32, f32), width: f32, color: Color) {
+        const DASH: f32 = 5.0;
+        let length = (bx - ax).hypot(by - ay);
+        let at = |s: f32| (ax + (bx - ax) * s / length, ay + (by - ay) * s / length);
+        for k in 0..(length / (2.0 * DASH)).ceil() as usize {
+            let start = 2.0 * DASH * k as f32;
+            self.line(&[at(start), at((start + DASH).min(length))], width, color);
+        }
+    }
+
+    /// Draws an arc of a circle, from one angle to another: from the right, counter-clockwise.
+    pub fn arc(&mut self, (x, y): (f32, f32), radius: f32, [from, to]: [f32; 2], width: f32, color: Color) {
+        let steps = ((to - from).abs() * radius / 3.0).ceil().clamp(8.0, 360.0) as usize;
+        let at = |k: usize| {
+            let (sin, cos) = (from + (to - from) * k as f32 / steps as f32).sin_cos();
+            (x + radius * cos, y - radius * sin)
+        };
+        self.line(&(0..=steps).map(at).collect::<Vec<_>>(), width, color);
     }
 
     /// Draws a filled disc.
     pub fn disc(&mut self, center: (f32, f32), radius: f32, color: Color) {
-        self.segment(center, center, radius, color);
+        self.marks.push(Mark::Disc { center, radius, color });
     }
 
-    /// Every pixel within `radius` of the segment; the edge fades over one pixel.
-    fn segment(&mut self, (ax, ay): (f32, f32), (bx, by): (f32, f32), radius: f32, color: Color) {
-        let (dx, dy) = (bx - ax, by - ay);
-        let length2 = (dx * dx + dy * dy).max(1e-6); // a point is a segment too
-        let reach = radius + 1.0;
-        for y in (ay.min(by) - reach) as i32..=(ay.max(by) + reach) as i32 {
-            for x in (ax.min(bx) - reach) as i32..=(ax.max(bx) + reach) as i32 {
-                let (px, py) = (x as f32 + 0.5 - ax, y as f32 + 0.5 - ay);
-                let t = ((px * dx + py * dy) / length2).clamp(0.0, 1.0);
-                let distance = (px - t * dx).hypot(py - t * dy);
-                self.mix(x, y, color, radius + 0.5 - distance);
-            }
+    /// Draws pixels over a frame; the title says what they show, where a format can say it.
+    pub fn image(&mut self, frame: Frame, pixels: Pixels, title: &str) {
+        self.marks.push(Mark::Image { frame, pixels, title: title.to_owned() });
+    }
+
+    /// Writes a text of `size`, from ascent to descent.
+    pub fn text(&mut self, text: &str, at: (f32, f32), size: f32, align: Align, color: Color) {
+        if !text.is_empty() {
+            self.marks.push(Mark::Text { text: text.to_owned(), at, size, align, color });
         }
     }
 
-    /// Writes a text of `size` pixels.
-    pub fn text(&mut self, text: &str, (x, y): (f32, f32), size: f32, align: Align, color: Color) {
-        let width = self.text_width(text, size);
-        let start = match align {
-            Align::Left => 0.0,
-            Align::Center | Align::Turned => -width / 2.0,
-            Align::Right => -width,
-        };
-        // Capitals and digits are about 0.7 em high: half of it puts their middle at y.
-        let baseline = 0.35 * size * EM;
-        let (x, y) = (x.round(), y.round());
-        let mut pen = start;
-        for (font, c) in self.glyphs(text) {
-            let scaled = font.as_scaled(PxScale::from(size));
-            let glyph = font.glyph_id(c).with_scale_and_position(size, point(pen, baseline));
-            pen += scaled.h_advance(font.glyph_id(c));
-            let Some(outline) = font.outline_glyph(glyph) else { continue };
-            let corner = outline.px_bounds().min;
-            outline.draw(|u, v, coverage| {
-                let (u, v) = (corner.x + u as f32, corner.y + v as f32);
-                let (px, py) = if let Align::Turned = align { (x + v, y - u - 1.0) } else { (x + u, y + v) };
-                // Light strokes on white look thin: some weight helps.
-                self.mix(px as i32, py as i32, color, coverage * WEIGHT);
-            });
-        }
-    }
-
-    /// The width of a text of `size` pixels.
+    /// The width of a text of `size`.
     pub fn text_width(&self, text: &str, size: f32) -> f32 {
-        let advance =
-            |(font, c): (FontRef, char)| font.as_scaled(PxScale::from(size)).h_advance(font.glyph_id(c));
-        self.glyphs(text).map(advance).sum()
+        self.fonts.width(text, size)
     }
 
     /// The text, cut with "…" where it is wider than `width`.
@@ -166,17 +176,23 @@ impl Canvas {
         }
         cut
     }
+}
+
+impl Fonts {
+    /// The width of a text of `size`.
+    pub fn width(&self, text: &str, size: f32) -> f32 {
+        let advance =
+            |(font, c): (&FontRef, char)| font.as_scaled(PxScale::from(size)).h_advance(font.glyph_id(c));
+        self.glyphs(text).map(advance).sum()
+    }
 
     /// Each character with the font that draws it.
-    fn glyphs<'t>(&self, text: &'t str) -> impl Iterator<Item = (FontRef<'static>, char)> + use<'t> {
-        let fonts = self.fonts.clone();
-        text.chars().map(move |c| {
-            let font = fonts.iter().find(|font| font.glyph_id(c).0 != 0).unwrap_or(&fonts[0]);
-            (font.clone(), c)
-        })
+    pub fn glyphs<'t>(&'t self, text: &'t str) -> impl Iterator<Item = (&'t FontRef<'static>, char)> {
+        text.chars().map(|c| (self.0.iter().find(|font| font.glyph_id(c).0 != 0).unwrap_or(&self.0[0]), c))
     }
 }
 
 /// ab_glyph's size is the height from ascent to descent; an em is about 0.87 of it.
-const EM: f32 = 0.87;
-const WEIGHT: f32 = 1.35;
+pub(super) const EM: f32 = 0.87;
+/// Capitals and digits are about 0.7 em high: half of it, below the middle, is their baseline.
+pub(super) const BASELINE: f32 = 0.35 * EM;

@@ -110,21 +110,28 @@ pub(super) fn hex(bytes: &[u8]) -> String {
 /// Every (file, hash) of a manifest, whatever they are.
 fn entries(manifest: &Value) -> impl Iterator<Item = (&str, &str)> {
     let tables = manifest.get("tables").and_then(Value::as_array).into_iter().flatten();
-    tables.flat_map(|table| {
+    let of_tables = tables.flat_map(|table| {
         let files = table.get("files").and_then(Value::as_object).into_iter().flatten();
         files.filter_map(|(format, name)| {
             let sha256 = table.get("sha256").and_then(|all| all.get(format)).and_then(Value::as_str);
             Some((name.as_str()?, sha256.unwrap_or_default()))
         })
-    })
+    });
+    // Files of no table: pictures and pages.
+    let others = manifest.get("files").and_then(Value::as_object).into_iter().flatten();
+    of_tables.chain(others.map(|(name, sha256)| (name.as_str(), sha256.as_str().unwrap_or_default())))
 }
 
-/// Whether a name can only mean a table file inside the folder.
+/// What a set has besides tables.
+const OTHERS: [&str; 3] = ["svg", "html", "md"];
+
+/// Whether a name can only mean a file of a set inside the folder.
 fn is_plain(name: &str) -> bool {
     let path = Path::new(name);
     let one = matches!(path.components().next(), Some(Component::Normal(part)) if part == name);
     let extension = path.extension().and_then(|extension| extension.to_str());
-    let ours = Format::ALL.iter().any(|format| extension == Some(format.name()));
+    let formats = Format::ALL.iter().map(|format| format.name()).chain(OTHERS);
+    let ours = formats.into_iter().any(|format| extension == Some(format));
     one && ours && !name.starts_with('.') && !name.contains(['/', '\\', ':', '\0'])
 }
 

@@ -2,10 +2,14 @@
 //! values at them.
 
 mod atlas;
+// SVG, and some of what is drawn, is for the command alone.
+#[cfg_attr(not(feature = "cli"), allow(dead_code))]
 mod canvas;
 mod colormap;
 mod entry;
 mod exr;
+#[cfg(feature = "cli")]
+mod labels;
 #[cfg(feature = "cli")]
 mod list;
 mod manifest;
@@ -14,9 +18,17 @@ mod npy;
 mod pairs;
 mod panel;
 mod png;
+#[cfg(feature = "cli")]
+mod polar;
+#[cfg(feature = "cli")]
+mod portrait;
+#[cfg_attr(not(feature = "cli"), allow(dead_code))]
+mod raster;
 mod scale;
 mod set;
 mod stream;
+#[cfg_attr(not(feature = "cli"), allow(dead_code))]
+mod svg;
 mod tradeoff;
 
 pub(crate) use atlas::{draw_page, draw_study};
@@ -27,15 +39,19 @@ pub(crate) use manifest::hash;
 pub use manifest::{read_manifest, sha256, verify};
 #[cfg(feature = "cli")]
 pub(crate) use pairs::Pairs;
+#[cfg(feature = "cli")]
+pub(crate) use portrait::{MOST_SETTINGS, MOST_THETAS, Picture, Plate, Radius, draw as draw_portraits};
 pub use set::{Files, TableSet};
 pub(crate) use stream::Tiles;
+#[cfg(feature = "cli")]
+pub(crate) use svg::escape;
 pub(crate) use tradeoff::draw as draw_trade;
 
 use crate::error::{Error, Result};
 use crate::table::Table;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::{fmt, fs, str};
 
 /// What a table came from, by name: the scene, its hash, the device. No times: the same input gives
@@ -55,20 +71,35 @@ pub enum Format {
     Png,
 }
 
-/// Writes files into a folder, which is made if it is not there: each under another name first, and all are
-/// renamed once all are there.
+/// Writes files into a folder, which is made if it is not there.
 pub(crate) fn write_together(dir: &Path, files: &[(String, Vec<u8>)]) -> Result<()> {
     fs::create_dir_all(dir).map_err(Error::io("create the folder", dir))?;
-    let partial = |name: &str| dir.join(format!(".{name}.partial"));
-    for (name, bytes) in files {
-        let path = partial(name);
-        fs::write(&path, bytes).map_err(Error::io("write", &path))?;
+    write_files(&files.iter().map(|(name, bytes)| (dir.join(name), bytes.as_slice())).collect::<Vec<_>>())
+}
+
+/// Writes files: each under another name first, and all are renamed once all are there. Of what fails nothing
+/// stays.
+pub(crate) fn write_files(files: &[(PathBuf, impl AsRef<[u8]>)]) -> Result<()> {
+    let partial = |path: &Path| {
+        path.with_file_name(format!(".{}.partial", path.file_name().unwrap_or_default().to_string_lossy()))
+    };
+    let write = || {
+        for (path, bytes) in files {
+            if path.is_dir() {
+                return Err(Error::input(format!("{}: it is a folder; give a file", path.display())));
+            }
+            fs::write(partial(path), bytes).map_err(set::explain("write", path))?;
+        }
+        for (path, _) in files {
+            fs::rename(partial(path), path).map_err(set::explain("write", path))?;
+        }
+        Ok(())
+    };
+    let written = write();
+    if written.is_err() {
+        files.iter().for_each(|(path, _)| drop(fs::remove_file(partial(path))));
     }
-    for (name, _) in files {
-        let path = dir.join(name);
-        fs::rename(partial(name), &path).map_err(Error::io("write", &path))?;
-    }
-    Ok(())
+    written
 }
 
 impl Format {

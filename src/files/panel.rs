@@ -1,6 +1,6 @@
 //! The pieces of a preview: a heat map of a slice, its ticks, labels and colour bar.
 
-use super::canvas::{Align, BLACK, Canvas, Frame, GREY, PALE};
+use super::canvas::{Align, BLACK, Canvas, Frame, GREY, PALE, Pixels};
 use super::colormap::viridis;
 use super::scale::{self, Scale};
 use crate::axis::Axis;
@@ -84,14 +84,14 @@ pub(super) fn heat_map(canvas: &mut Canvas, frame: Frame, slice: &Slice, scale: 
     let (width, height) = (frame.w as usize, frame.h as usize);
     let columns = cells(&slice.table.axes[slice.x], width);
     let rows = cells(&slice.table.axes[slice.y], height);
-    for (py, &(top, end)) in rows.iter().rev().enumerate() {
-        for (px, &(left, right)) in columns.iter().enumerate() {
-            let inside = (left..=right).flat_map(|i| (top..=end).map(move |j| slice.value(i, j)));
-            let value = inside.fold(f64::NEG_INFINITY, f64::max);
-            let color = if value.is_finite() { viridis(scale.at(value)) } else { GREY };
-            canvas.mix(frame.x as i32 + px as i32, frame.y as i32 + py as i32, color, 1.0);
-        }
-    }
+    let color = |&(top, end): &(usize, usize), &(left, right): &(usize, usize)| {
+        let inside = (left..=right).flat_map(|i| (top..=end).map(move |j| slice.value(i, j)));
+        let value = inside.fold(f64::NEG_INFINITY, f64::max);
+        if value.is_finite() { viridis(scale.at(value)) } else { GREY }
+    };
+    let colors = rows.iter().rev().flat_map(|row| columns.iter().map(move |column| color(row, column)));
+    let pixels = Pixels { width, colors: colors.collect() };
+    canvas.image(frame, pixels, &slice.table.name);
     canvas.border(frame, GREY);
 }
 
@@ -119,7 +119,7 @@ pub(super) fn ticks_below(canvas: &mut Canvas, frame: Frame, scale: &Scale, grid
 }
 
 pub(super) fn ticks_left(canvas: &mut Canvas, frame: Frame, scale: &Scale, grid: bool) {
-    for (value, label) in scale.ticks((frame.h / 44.0) as usize) {
+    for (value, label) in scale.ticks((frame.h / 40.0) as usize) {
         let y = frame.y + (frame.h - 1.0) * (1.0 - scale.at(value) as f32);
         if grid {
             canvas.fill(Frame { x: frame.x, y, w: frame.w, h: 1.0 }, PALE);
@@ -136,10 +136,9 @@ pub(super) fn axis_labels(canvas: &mut Canvas, frame: Frame, below: &str, left: 
 }
 
 pub(super) fn color_bar(canvas: &mut Canvas, frame: Frame, scale: &Scale, label: &str) {
-    for row in 0..frame.h as usize {
-        let color = viridis(1.0 - (row as f64 + 0.5) / f64::from(frame.h));
-        canvas.fill(Frame { y: frame.y + row as f32, h: 1.0, ..frame }, color);
-    }
+    let rows = frame.h as usize;
+    let color = |row| viridis(1.0 - (row as f64 + 0.5) / rows as f64);
+    canvas.image(frame, Pixels { width: 1, colors: (0..rows).map(color).collect() }, label);
     canvas.border(frame, GREY);
     let right = frame.x + frame.w;
     for (value, label) in scale.ticks((frame.h / 44.0) as usize) {

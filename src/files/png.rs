@@ -36,7 +36,7 @@ fn numbers(table: &Table) -> Result<Vec<u8>> {
         let line = format!("{channel} = {} {}", table.values.show(k), unit(table));
         canvas.text(&line, (24.0, HEADER + 16.0 + 32.0 * k as f32), 22.0, Align::Left, BLACK);
     }
-    canvas.into_png()
+    canvas.to_png(1)
 }
 
 /// A table over one axis: a line for each channel.
@@ -71,7 +71,7 @@ fn lines(table: &Table, x: usize) -> Result<Vec<u8>> {
         let name = canvas.fit(channel, LABEL_SIZE, 1100.0 - x - 40.0);
         canvas.text(&name, (x + 32.0, y), LABEL_SIZE, Align::Left, BLACK);
     }
-    canvas.into_png()
+    canvas.to_png(1)
 }
 
 /// A table over two axes: a heat map for each channel, each with its own colour bar.
@@ -107,7 +107,7 @@ fn maps(table: &Table, x: usize, y: usize) -> Result<Vec<u8>> {
             &quantity(table),
         );
     }
-    canvas.into_png()
+    canvas.to_png(1)
 }
 
 /// A table over three axes or more: slices at a few values of the slow axes, all with one colour bar.
@@ -177,7 +177,7 @@ fn multiples(table: &Table, slow: &[usize], x: usize, y: usize) -> Result<Vec<u8
     }
     let tall = Frame { x: right - gap + 14.0, y: HEADER + 30.0, w: 16.0, h: bottom - HEADER - 34.0 };
     color_bar(&mut canvas, tall, &scale, &quantity(table));
-    canvas.into_png()
+    canvas.to_png(1)
 }
 
 /// Up to `count` indices of an axis, from its first sample in even steps. Zenith angles stop a step

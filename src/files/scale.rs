@@ -159,7 +159,8 @@ fn number(value: f64, step: f64) -> String {
     format!("{value:.digits$}")
 }
 
-fn power_of_ten(n: i32) -> String {
+/// "10⁻³".
+pub(super) fn power_of_ten(n: i32) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let text = n.to_string();
     let raised = text.chars().filter_map(|c| match c.to_digit(10) {

@@ -114,6 +114,19 @@ impl TableSet {
         Ok(written)
     }
 
+    /// Adds a file of another kind, a picture or a page, under its own name. Returns its SHA-256, which
+    /// belongs beside the name in the manifest's `files`.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write).
+    #[cfg(feature = "cli")]
+    pub(crate) fn add(&mut self, name: &str, bytes: &[u8]) -> Result<String> {
+        self.refuse_foreign(name)?;
+        save(&self.dir.join(STAGING).join(name), bytes)?;
+        self.staged.insert(name.to_owned());
+        Ok(manifest::hash(bytes))
+    }
+
     /// Where the tiles of a streamed table are kept; `keys` name all that this bake streams, and tiles of
     /// anything else go.
     ///
@@ -209,7 +222,8 @@ impl TableSet {
         stem
     }
 
-    fn refuse_foreign(&self, name: &str) -> Result<()> {
+    /// Refuses a name that a file has which is not of the old set.
+    pub(crate) fn refuse_foreign(&self, name: &str) -> Result<()> {
         let path = self.dir.join(name);
         if path.symlink_metadata().is_err() || self.old.iter().any(|old| old.name == name) {
             return Ok(());

@@ -67,5 +67,5 @@ pub(crate) fn draw(trade: &Trade) -> Result<Vec<u8>> {
         labels.push(y);
         canvas.text(method, (x + 10.0, y), LABEL_SIZE, Align::Left, color);
     }
-    canvas.into_png()
+    canvas.to_png(1)
 }

@@ -3,11 +3,12 @@
 use super::Args;
 use crate::axis::Variable;
 use crate::bake::Evaluator;
+use crate::cli::subject;
 use crate::error::{Error, Result};
 use crate::models::{self, Model};
 use crate::plan::{Lobe, constant_lobes};
 use crate::promises::{Parameter, Sum};
-use crate::scene::{self, Distribution, Scene, SubjectRequest};
+use crate::scene::{Distribution, Scene, SubjectRequest};
 use std::path::Path;
 
 /// A subject, and the command that evaluates it, but for its parameters and directions.
@@ -21,17 +22,14 @@ pub fn model<'a>(args: &Args, name: &str, evaluator: &'a Evaluator) -> Result<Ta
     let mut model = models::find(name)?;
     let (mut fixed, mut ranges) = (Vec::new(), Vec::new());
     for set in &args.set {
-        let (key, value) = set.split_once('=').ok_or_else(|| {
-            Error::input(format!("--set {set}: give KEY=VALUE or KEY=LOW..HIGH, as in --set alpha=1e-6..1"))
-        })?;
-        let key = key.trim();
+        let (key, value) = subject::key_value(set)?;
         if fixed.iter().any(|(given, _)| *given == key) || ranges.iter().any(|r: &Parameter| r.name == key) {
             return Err(Error::input(format!("--set {set}: \"{key}\" is given twice")));
         }
         match value.split_once("..") {
             // Terms have no numbers: the model's name tells them from here on.
-            None if key == "masking" => model = model.with_terms(Some(value.trim()), None)?,
-            None if key == "fresnel" => model = model.with_terms(None, Some(value.trim()))?,
+            None if key == "masking" => model = model.with_terms(Some(value), None)?,
+            None if key == "fresnel" => model = model.with_terms(None, Some(value))?,
             None => fixed.push((key, value)),
             Some((low, high)) => {
                 let number = |text: &str| {
@@ -63,14 +61,10 @@ pub fn model<'a>(args: &Args, name: &str, evaluator: &'a Evaluator) -> Result<Ta
     // The recipe's own reader says what is wrong with a name or a value: at both ends of the ranges.
     let mut lobe = None;
     for end in [|p: &Parameter| p.low, |p: &Parameter| p.high] {
-        let mut text = format!("model = \"{}\"", model.name);
-        fixed.iter().for_each(|(key, value)| text += &format!(", {key} = {value}"));
-        ranges.iter().for_each(|range| text += &format!(", {} = {:?}", range.name, end(range)));
-        let text = format!("[materials.{}]\nlobes = [{{ {text} }}]\n", model.name);
-        let scene = scene::parse_recipe("--set".as_ref(), text.as_bytes())?;
-        if !scene.tables.is_empty() || scene.materials.len() != 1 || scene.materials[0].lobes.len() != 1 {
-            return Err(Error::input("--set: give one value or range of one parameter each"));
-        }
+        let ranged: Vec<_> =
+            ranges.iter().map(|range| (range.name.as_str(), format!("{:?}", end(range)))).collect();
+        let ranged = ranged.iter().map(|(key, value)| (*key, value.as_str()));
+        let scene = subject::model(model.name, fixed.iter().copied().chain(ranged))?;
         lobe = constant_lobes(&scene.materials[0]).map_err(Error::input)?.pop();
     }
     let lobe = lobe.ok_or_else(|| Error::Internal("a model without a lobe".into()))?;
@@ -151,7 +145,7 @@ fn used(scene: &Scene, model: &Model) -> Option<[f64; 2]> {
 }
 
 /// A word that a POSIX shell reads as it is.
-fn quoted(word: &str) -> String {
+pub(in crate::cli) fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=+,:%@".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
         return word.to_owned();
