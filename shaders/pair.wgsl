@@ -16,6 +16,7 @@ struct Pair {
 struct Azimuth {
     sin2: real,   // sin²(δ/2)
     cos2: real,   // cos²(δ/2)
+    back: real,   // max(0, −cos δ) = max(0, cos(φi − φe)): 0 unless ωe is on the side of ωi
     weight: real, // of this δφ in an integral
     bin: real,    // 1 / weight of this δφ cell where it holds δφ = 0, else 0
 }

@@ -26,11 +26,12 @@ pub(crate) fn evaluate<E: Send>(
                 })?;
             }
             WorkKind::Integrals { inner, outer } => {
-                let texels = sums.len() / channels;
+                let (texels, nodes) = (sums.len() / channels, work.nodes());
                 sums.par_chunks_mut(channels).enumerate().try_for_each(|(texel, out)| {
                     let mut sum = [0.0; 2];
-                    for (k, weight) in outer.iter().enumerate() {
-                        let at = texel * outer.len() + k;
+                    let own = texel * nodes % outer.len();
+                    for (k, weight) in outer[own..own + nodes].iter().enumerate() {
+                        let at = texel * nodes + k;
                         let [a, b] = integrate(&work, inner, lobe, at / inner.count(), at % inner.count());
                         sum = [sum[0] + weight * a, sum[1] + weight * b];
                     }

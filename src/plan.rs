@@ -367,7 +367,7 @@ impl TablePlan {
         for Lobe { model, .. } in &self.lobes {
             let fits = match model.integral {
                 Integral::Slopes(_) => true,
-                Integral::Smooth(_) => self.rule.samples().is_none(),
+                Integral::Smooth(_) | Integral::Kinked(_) => self.rule.samples().is_none(),
                 Integral::Delta(_) => matches!(self.rule, Rule::Warped | Rule::Grid { .. }),
                 Integral::Unbounded(_) => self.quantity.evaluation == Evaluation::Value,
             };

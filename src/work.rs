@@ -17,13 +17,16 @@ use std::iter;
 pub(crate) struct Work {
     /// α along the table's slowest axis.
     pub alphas: Vec<f64>,
+    /// Texels for each α.
+    pub directions: usize,
     pub kind: WorkKind,
 }
 
 pub(crate) enum WorkKind {
     /// A row of values for each (α, pair): one value an azimuth.
     Values { pairs: Vec<Pair>, azimuths: Vec<Azimuth> },
-    /// For each (α, direction, outer node) a raw integral; a texel is the sum of its outer nodes.
+    /// For each (α, direction, outer node) a raw integral; a texel is the sum of its outer nodes, whose weights are
+    /// the same for all directions, or one direction's after the other's.
     Integrals { inner: Inner, outer: Vec<f64> },
 }
 
@@ -51,14 +54,33 @@ impl Work {
             Evaluation::Value => values(table),
             Evaluation::Directional => integrals(table, lobe, &directions(table), &[1.0]),
             Evaluation::Hemispherical => {
-                // ρ_hh = ∫ ρ 2μ dμ with μ = u²: ρ turns at μ ≈ α, where u has nodes to spare.
                 let nodes = gauss_legendre(MEAN_NODES[decade(table.rule_tolerance())]);
-                let thetas: Vec<_> = nodes.iter().map(|node| (node.x * node.x).acos()).collect();
-                let weights: Vec<_> = nodes.iter().map(|n| 4.0 * n.x.powi(3) * n.weight).collect();
+                let [thetas, weights]: [Vec<_>; 2] = match lobe.model.integral {
+                    // ρ_hh = ∫ ρ sin 2θ dθ: a kink at θe = θi leaves odd powers of sin θ in ρ.
+                    Integral::Kinked(_) => {
+                        let thetas: Vec<_> = nodes.iter().map(|node| FRAC_PI_2 * node.x).collect();
+                        let weight = |n: &Node| FRAC_PI_2 * n.weight * (PI * n.x).sin();
+                        [thetas, nodes.iter().map(weight).collect()]
+                    }
+                    // ρ_hh = ∫ ρ 2μ dμ with μ = u²: ρ turns at μ ≈ α, where u has nodes to spare.
+                    _ => [
+                        nodes.iter().map(|node| (node.x * node.x).acos()).collect(),
+                        nodes.iter().map(|n| 4.0 * n.x.powi(3) * n.weight).collect(),
+                    ],
+                };
                 integrals(table, lobe, &thetas, &weights)
             }
         };
-        Self { alphas, kind }
+        let directions = table.texels() / alphas.len();
+        Self { alphas, directions, kind }
+    }
+
+    /// Outer nodes of a texel.
+    pub fn nodes(&self) -> usize {
+        match &self.kind {
+            WorkKind::Values { .. } => 1,
+            WorkKind::Integrals { inner, .. } => inner.count() / self.directions,
+        }
     }
 
     /// Evaluations of the integrand, or of values, for the whole table.
@@ -119,6 +141,17 @@ fn integrals(table: &TablePlan, lobe: &Lobe, thetas: &[f64], weights: &[f64]) ->
         let outer = weights.iter().flat_map(|w| grid.iter().map(move |cell| w * cell.weight)).collect();
         WorkKind::Integrals { inner: Inner::Product { pairs, azimuths }, outer }
     };
+    // One direction's own cells after the other's.
+    let kinked = |[theta, phi]: [usize; 2]| {
+        let (rule, weights) = (gauss_legendre(theta), weights.iter().cycle());
+        let cells = thetas.iter().zip(weights).flat_map(|(&theta_i, weight)| {
+            let cells = panels(&rule, [0.0, theta_i, FRAC_PI_2]);
+            cells.into_iter().map(move |cell| (cell.pair(theta_i), weight * cell.weight))
+        });
+        let (pairs, outer) = cells.unzip();
+        let azimuths = kinked_azimuths(phi);
+        WorkKind::Integrals { inner: Inner::Product { pairs, azimuths }, outer }
+    };
     let mus = || thetas.iter().map(|theta| theta.cos().max(MU_MIN)).collect();
     let sampled = |sampler: Sampler, slopes: &'static Slopes, samples: usize| {
         let work = SampleWork::new(sampler, slopes, mus(), samples);
@@ -137,6 +170,7 @@ fn integrals(table: &TablePlan, lobe: &Lobe, thetas: &[f64], weights: &[f64]) ->
             let [theta, phi] = nodes(table.rule_tolerance());
             smooth(gauss_cells(theta), gauss_azimuths(2 * phi))
         }
+        (_, Integral::Kinked(nodes)) => kinked(nodes(table.rule_tolerance())),
         (Rule::Warped, Integral::Slopes(slopes)) => {
             let work =
                 SlopeWork::new(slopes, mus(), &lobe.settings(table.alphas(lobe)), table.rule_tolerance());
@@ -188,13 +222,19 @@ fn grid_cells(n: usize) -> Vec<Cell> {
 
 /// Gauss–Legendre in θ, with cos θ sin θ.
 fn gauss_cells(n: usize) -> Vec<Cell> {
-    gauss_legendre(n)
-        .iter()
-        .map(|node| {
-            let theta = FRAC_PI_2 * node.x;
-            Cell { theta, weight: FRAC_PI_2 * node.weight * theta.sin() * theta.cos(), edges: None }
+    panels(&gauss_legendre(n), [0.0, FRAC_PI_2])
+}
+
+/// The same in each panel between two of `breaks`.
+fn panels<const N: usize>(rule: &[Node], breaks: [f64; N]) -> Vec<Cell> {
+    let panel = |ends: &[f64]| {
+        let (start, width) = (ends[0], ends[1] - ends[0]);
+        rule.iter().map(move |node| {
+            let theta = start + width * node.x;
+            Cell { theta, weight: width * node.weight * theta.sin() * theta.cos(), edges: None }
         })
-        .collect()
+    };
+    breaks.windows(2).flat_map(panel).collect()
 }
 
 /// `n` midpoints in φ ∈ [0, 2π), of which the half in δφ ∈ [0, π] is kept with twice the weight: the
@@ -215,4 +255,17 @@ fn grid_azimuths(n: usize) -> Vec<Azimuth> {
 fn gauss_azimuths(n: usize) -> Vec<Azimuth> {
     let azimuth = |node: &Node| Azimuth { weight: 2.0 * PI * node.weight, ..Azimuth::new(PI * node.x) };
     gauss_legendre(n / 2).iter().map(azimuth).collect()
+}
+
+/// Gauss–Legendre, `n` nodes in each of [0, π/2] and [π/2, π], with their mirror images.
+fn kinked_azimuths(n: usize) -> Vec<Azimuth> {
+    let rule = gauss_legendre(n);
+    let half = |start: f64| {
+        let azimuth = move |node: &Node| Azimuth {
+            weight: PI * node.weight,
+            ..Azimuth::new(start + FRAC_PI_2 * node.x)
+        };
+        rule.iter().map(azimuth)
+    };
+    half(0.0).chain(half(FRAC_PI_2)).collect()
 }
