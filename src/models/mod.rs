@@ -212,6 +212,8 @@ macro_rules! models {
 models! {
     diffuse::lambert::MODEL,
     diffuse::gltf_diffuse::MODEL,
+    diffuse::burley::MODEL,
+    diffuse::frostbite::MODEL,
     microfacet::GGX,
     mirror::MODEL,
 }

@@ -22,7 +22,7 @@ mod tests;
 
 use crate::setting::Setting;
 
-pub use diffuse::{gltf::GLTF_DIFFUSE, lambert::LAMBERT};
+pub use diffuse::{burley::BURLEY, frostbite::FROSTBITE, gltf::GLTF_DIFFUSE, lambert::LAMBERT};
 pub use directions::{Angles, MIN_MU};
 pub(crate) use fresnel::{Fresnel, none::Constant, schlick::Schlick};
 pub(crate) use masking::{
