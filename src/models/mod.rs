@@ -212,6 +212,9 @@ macro_rules! models {
 models! {
     diffuse::lambert::MODEL,
     diffuse::gltf_diffuse::MODEL,
+    diffuse::oren_nayar::MODEL,
+    diffuse::fujii::MODEL,
+    diffuse::eon::MODEL,
     diffuse::burley::MODEL,
     diffuse::frostbite::MODEL,
     microfacet::GGX,
