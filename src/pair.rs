@@ -101,6 +101,6 @@ impl Half {
 }
 
 /// θ, or the angle whose cosine is [`MU_MIN`] if it is nearer to the horizon.
-fn off_horizon(theta: f64) -> f64 {
+pub(crate) fn off_horizon(theta: f64) -> f64 {
     theta.min(MU_MIN.acos())
 }

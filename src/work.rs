@@ -3,7 +3,7 @@
 
 use crate::axis::Variable;
 use crate::models::{Integral, Slopes, decade};
-use crate::pair::{Azimuth, MU_MIN, Pair};
+use crate::pair::{Azimuth, MU_MIN, Pair, off_horizon};
 use crate::plan::{Lobe, Rule, TablePlan};
 use crate::quadrature::{Node, gauss_legendre, midpoint};
 use crate::quantity::Evaluation;
@@ -145,7 +145,7 @@ fn integrals(table: &TablePlan, lobe: &Lobe, thetas: &[f64], weights: &[f64]) ->
     let kinked = |[theta, phi]: [usize; 2]| {
         let (rule, weights) = (gauss_legendre(theta), weights.iter().cycle());
         let cells = thetas.iter().zip(weights).flat_map(|(&theta_i, weight)| {
-            let cells = panels(&rule, [0.0, theta_i, FRAC_PI_2]);
+            let cells = panels(&rule, [0.0, off_horizon(theta_i), FRAC_PI_2]);
             cells.into_iter().map(move |cell| (cell.pair(theta_i), weight * cell.weight))
         });
         let (pairs, outer) = cells.unzip();

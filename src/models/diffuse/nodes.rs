@@ -1,7 +1,7 @@
 //! How many nodes a tolerance takes: what the tables of the lobes here are from.
 
 use crate::models::{Integral, MODELS, Model};
-use crate::pair::{Azimuth, Pair};
+use crate::pair::{Azimuth, Pair, off_horizon};
 use crate::quadrature::gauss_legendre;
 use crate::setting::Setting;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -12,7 +12,7 @@ const PLENTY: usize = 64;
 /// ρ_dh(θi) by so many nodes in each panel.
 fn rho(model: &Model, setting: &Setting, theta_i: f64, [theta, phi]: [usize; 2]) -> f64 {
     let kinked = matches!(model.integral, Integral::Kinked(_));
-    let thetas = if kinked { vec![0.0, theta_i, FRAC_PI_2] } else { vec![0.0, FRAC_PI_2] };
+    let thetas = if kinked { vec![0.0, off_horizon(theta_i), FRAC_PI_2] } else { vec![0.0, FRAC_PI_2] };
     let deltas = if kinked { vec![0.0, FRAC_PI_2, PI] } else { vec![0.0, PI] };
     let azimuths: Vec<_> = nodes(&deltas, phi).map(|(delta, weight)| (Azimuth::new(delta), weight)).collect();
     nodes(&thetas, theta)
