@@ -34,8 +34,8 @@ pub struct Azimuth {
     pub sin2: f64,
     /// cos²(δ/2)
     pub cos2: f64,
-    /// max(0, −cos δ) = max(0, cos(φi − φe)): 0 unless ωe is on the side of ωi. A factor of its own, as what a lobe
-    /// weighs it with may be 1/μ, and sin² − cos² has lost its digits near δ = π/2.
+    /// max(0, −cos δ) = max(0, cos(φi − φe)): 0 unless ωe is on the side of ωi. A factor of its own, as what
+    /// a lobe weighs it with may be 1/μ, and sin² − cos² has lost its digits near δ = π/2.
     pub back: f64,
     /// The weight of this δφ in an integral.
     pub weight: f64,

@@ -25,8 +25,8 @@ pub(crate) struct Work {
 pub(crate) enum WorkKind {
     /// A row of values for each (α, pair): one value an azimuth.
     Values { pairs: Vec<Pair>, azimuths: Vec<Azimuth> },
-    /// For each (α, direction, outer node) a raw integral; a texel is the sum of its outer nodes, whose weights are
-    /// the same for all directions, or one direction's after the other's.
+    /// For each (α, direction, outer node) a raw integral; a texel is the sum of its outer nodes, whose
+    /// weights are the same for all directions, or one direction's after the other's.
     Integrals { inner: Inner, outer: Vec<f64> },
 }
 

@@ -100,9 +100,9 @@ fn of_eon_have_their_closed_form() {
     }
 }
 
-/// Disney's lobe at roughness 1 where ωi grazes: F90 = 3/2 + sin θe cos φ there, and ρ_dh = 785/504; Frostbite's is
-/// 1/1.51 of that. At the normal (1 − μi)⁵ is 0 and F90 − 1 = r (1 + μ) − 1/2, so that ρ_dh is a polynomial: with
-/// ∫ μ x⁵ = 1/42 and ∫ μ² x⁵ = 1/168 over x = 1 − μ, 1 + (r − 1/2)/21 + r/84.
+/// Disney's lobe at roughness 1 where ωi grazes: F90 = 3/2 + sin θe cos φ there, and ρ_dh = 785/504;
+/// Frostbite's is 1/1.51 of that. At the normal (1 − μi)⁵ is 0 and F90 − 1 = r (1 + μ) − 1/2, so that ρ_dh is
+/// a polynomial: with ∫ μ x⁵ = 1/42 and ∫ μ² x⁵ = 1/168 over x = 1 − μ, 1 + (r − 1/2)/21 + r/84.
 #[test]
 fn of_burley_and_frostbite_have_their_closed_forms() {
     for evaluator in evaluators() {

@@ -1,6 +1,7 @@
-// EON, Portsmouth, Kutz & Hill 2025: f = ρ f₁ + ρₘ (1 − Ei)(1 − Ee)/(π (1 − Ē)), f₁ Fujii's form, E its albedo, Ē their
-// mean, ρₘ = ρ² Ē/(1 − ρ (1 − Ē)). With alpha = o = σ/(1 − σ), k₁ = 1/2 − 2/(3π), k₂ = 2/3 − 28/(15π), N = 1/(1 + (1 + k₁) o):
-// 1 − E = N o (k₁ − G/π), Ē = N (1 + (1 + k₂) o), 1 − Ē = N o (k₁ − k₂): no difference of what is nearly equal.
+// EON, Portsmouth, Kutz & Hill 2025: f = ρ f₁ + ρₘ (1 − Ei)(1 − Ee)/(π (1 − Ē)), f₁ Fujii's form, E its
+// albedo, Ē their mean, ρₘ = ρ² Ē/(1 − ρ (1 − Ē)). With alpha = o = σ/(1 − σ), k₁ = 1/2 − 2/(3π), k₂ = 2/3 −
+// 28/(15π), N = 1/(1 + (1 + k₁) o): 1 − E = N o (k₁ − G/π), Ē = N (1 + (1 + k₂) o), 1 − Ē = N o (k₁ − k₂): no
+// difference of what is nearly equal.
 
 const ONE_PLUS_K1: real = 1.2877934092108063;
 const ONE_PLUS_K2: real = 1.072488212456924;
@@ -23,8 +24,9 @@ fn lobe_row(p: Pair, alpha: real) -> real {
     return scale * (lost_at(p.mu_i) * lost_at(p.mu_e));
 }
 
-/// π k₁ − G(μ), G = S (θ − S μ) + 2/3 (S (1 − S³)/μ − S), S = sin θ. With y = tan(γ/2) = μ/(1 + S), γ = π/2 − θ:
-/// (1 − S³)/μ = y (1 + S + S²), and what does not vanish with μ cancels in the formula, not in the arithmetic.
+/// π k₁ − G(μ), G = S (θ − S μ) + 2/3 (S (1 − S³)/μ − S), S = sin θ. With y = tan(γ/2) = μ/(1 + S), γ = π/2 −
+/// θ: (1 − S³)/μ = y (1 + S + S²), and what does not vanish with μ cancels in the formula, not in the
+/// arithmetic.
 fn lost_at(mu: real) -> real {
     let s = sqrt((1.0 - mu) * (1.0 + mu));
     let y = mu / (1.0 + s);

@@ -1,5 +1,5 @@
-// Fujii's form of Oren–Nayar: f = A (1 + σ s/t)/π, A = 1/(1 + k σ), k = 1/2 − 2/(3π). alpha is o = σ/(1 − σ), so that
-// f = ((1 − σ) + σ (1 + s/t)) A/π = (1 + o (1 + s/t))/(1 + (1 + k) o)/π has no difference.
+// Fujii's form of Oren–Nayar: f = A (1 + σ s/t)/π, A = 1/(1 + k σ), k = 1/2 − 2/(3π). alpha is o = σ/(1 − σ),
+// so that f = ((1 − σ) + σ (1 + s/t)) A/π = (1 + o (1 + s/t))/(1 + (1 + k) o)/π has no difference.
 
 const ONE_PLUS_K: real = 1.2877934092108063;
 

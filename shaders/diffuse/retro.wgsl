@@ -1,7 +1,8 @@
 // What the forms of Oren and Nayar's model share. s = ωi·ωe − μi μe = sin θi sin θe cos(φi − φe), and t is
 // max(μi, μe) where s > 0, else 1.
 
-/// max(0, s)/t = sin α tan β max(0, cos(φi − φe)), α the larger and β the smaller of θi and θe: no angle, no tangent.
+/// max(0, s)/t = sin α tan β max(0, cos(φi − φe)), α the larger and β the smaller of θi and θe: no angle, no
+/// tangent.
 fn retro(p: Pair, a: Azimuth) -> real {
     return p.ss * a.back / max(p.mu_i, p.mu_e);
 }

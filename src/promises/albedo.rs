@@ -61,8 +61,8 @@ pub(super) fn check(
     Ok(Some(finding(probe, largest(&places), least, tolerance)))
 }
 
-/// Each parameter between its ends, the others at their upper ones: ρ_dh is linear in weights, so that a gain between
-/// the ends of a shape shows with all weights at their most, and may show nowhere else.
+/// Each parameter between its ends, the others at their upper ones: ρ_dh is linear in weights, so that a gain
+/// between the ends of a shape shows with all weights at their most, and may show nowhere else.
 pub(super) fn sweeps(parameters: &[Parameter]) -> impl Iterator<Item = Vec<f64>> {
     let free = (0..parameters.len()).filter(|&k| parameters[k].low < parameters[k].high);
     free.flat_map(move |k| {

@@ -248,10 +248,10 @@ impl Subject for Sum<'_> {
         &self.declared
     }
 
-    /// Whether these parameters can show a declared gain of energy is for the reference to say. ρ_dh is linear
-    /// in each weight, so its maximum over weights is at a corner of the ranges; of a shape both ends are tried and
-    /// what is between, and θi on a list. Where the reference gains more than the device's tolerance there, the device
-    /// must too.
+    /// Whether these parameters can show a declared gain of energy is for the reference to say. ρ_dh is
+    /// linear in each weight, so its maximum over weights is at a corner of the ranges; of a shape both ends
+    /// are tried and what is between, and θi on a list. Where the reference gains more than the device's
+    /// tolerance there, the device must too.
     fn shows(&self, _property: &str) -> bool {
         let corners = (0..1usize << self.whole.len().min(8)).map(|corner| {
             let end = |(k, p): (usize, &Parameter)| if corner >> k & 1 == 1 { p.high } else { p.low };

@@ -9,11 +9,12 @@
 //! | `roughness` | [0, 1] | – | none | as it is, not squared |
 //! | `albedo` | [0, 1] | – | none | baseColor, weighs A |
 //!
-//! At roughness 0 it is not Lambert: half of the light is lost on the way in at grazing, and half on the way out, so that
-//! edges are dark. At 0.5 it is nearly Lambert, at 1 edges lit from behind the viewer shine.
+//! At roughness 0 it is not Lambert: half of the light is lost on the way in at grazing, and half on the way
+//! out, so that edges are dark. At 0.5 it is nearly Lambert, at 1 edges lit from behind the viewer shine.
 //!
-//! Kept: finite, bounded (6.25/π), not negative, reciprocal to the bit. Broken: energy. At roughness 1, ρ_dh is 1.036 at the
-//! normal and 785/504 = 1.5575 where ωi grazes, the largest there is; from roughness 0.4 on some is gained.
+//! Kept: finite, bounded (6.25/π), not negative, reciprocal to the bit. Broken: energy. At roughness 1, ρ_dh
+//! is 1.036 at the normal and 785/504 = 1.5575 where ωi grazes, the largest there is; from roughness 0.4 on
+//! some is gained.
 
 use super::grazing::{self, cos2_d, scatter};
 use crate::models::{Component, Integral, Model, Shape, decade, part};
@@ -39,8 +40,8 @@ pub(crate) static MODEL: Model = Model {
     reference: Some(reference::BURLEY),
 };
 
-/// Nodes in θe and δφ for tolerances 1e-1 … 1e-10, measured (`nodes.rs`): the error of each count alone, worst over
-/// θi and the roughness, is below a quarter of the tolerance.
+/// Nodes in θe and δφ for tolerances 1e-1 … 1e-10, measured (`nodes.rs`): the error of each count alone,
+/// worst over θi and the roughness, is below a quarter of the tolerance.
 fn nodes(tolerance: f64) -> [usize; 2] {
     const COUNTS: [[usize; 2]; 10] =
         [[3, 1], [4, 3], [5, 4], [6, 4], [7, 5], [8, 6], [9, 6], [9, 7], [10, 7], [11, 8]];

@@ -1,5 +1,5 @@
-//! Portsmouth, Kutz & Hill 2025, *EON: A Practical Energy-Preserving Rough Diffuse BRDF*, JCGT 14 (1), listing 1 with
-//! the exact albedo. Twin of `shaders/diffuse/eon.wgsl`.
+//! Portsmouth, Kutz & Hill 2025, *EON: A Practical Energy-Preserving Rough Diffuse BRDF*, JCGT 14 (1),
+//! listing 1 with the exact albedo. Twin of `shaders/diffuse/eon.wgsl`.
 //!
 //! ```text
 //! f = weight · (ρ f₁ + ρₘ/π · (1 − E(μi)) (1 − E(μe))/(1 − Ē)),   f₁ Fujii's form with σ' = r
@@ -14,14 +14,15 @@
 //! | `albedo` | [0, 1], or R, G, B | – | 1 | ρ of a facet |
 //! | `weight` | [0, 1], or R, G, B | – | 1 | weighs A |
 //!
-//! What is scattered n times has the colour ρⁿ, so that f is not linear in ρ: it is a parameter, not a weight, and a
-//! material of three different ρ is three lobes, one for each channel.
+//! What is scattered n times has the colour ρⁿ, so that f is not linear in ρ: it is a parameter, not a
+//! weight, and a material of three different ρ is three lobes, one for each channel.
 //!
-//! r = 0 is Lambert, bit by bit. At 1 a full moon is nearly flat, and what lies in its middle brighter than Fujii's; a
-//! coloured one is more saturated than its ρ.
+//! r = 0 is Lambert, bit by bit. At 1 a full moon is nearly flat, and what lies in its middle brighter than
+//! Fujii's; a coloured one is more saturated than its ρ.
 //!
-//! Kept: finite, not negative, reciprocal to the bit; energy: ρ_dh = ρ E + ρₘ (1 − E) ≤ 1, and exactly 1 at ρ = 1.
-//! f has no bound where both directions graze on the same side, and at r = 1 it is 0 where both graze ahead.
+//! Kept: finite, not negative, reciprocal to the bit; energy: ρ_dh = ρ E + ρₘ (1 − E) ≤ 1, and exactly 1 at ρ
+//! = 1. f has no bound where both directions graze on the same side, and at r = 1 it is 0 where both graze
+//! ahead.
 
 use super::retro;
 use crate::models::{Component, Integral, Model, Parameter, Shape, decade, part};
@@ -30,7 +31,7 @@ use std::f64::consts::{FRAC_1_PI, PI};
 
 pub(crate) static MODEL: Model = Model {
     name: "eon",
-    summary: "energy-preserving Oren–Nayar: white reflects all; multiple scattering saturates the albedo's colour",
+    summary: "energy-preserving Oren–Nayar: white reflects all, colours saturate",
     source: "Portsmouth, Kutz & Hill 2025, listing 1, exact albedo",
     microfacet: None,
     components: &[Component { name: "A", weight: "weight", default: Some(1.0) }],
@@ -76,8 +77,8 @@ fn lost_at(mu: f64) -> f64 {
     (PI - 4.0 / 3.0) * y2 / (1.0 + y2) + s * gamma + s * s * mu - 2.0 / 3.0 * s * y * (1.0 + s + s * s)
 }
 
-/// Nodes in each panel of θe and of δφ for tolerances 1e-1 … 1e-10, measured (`nodes.rs`): the error of each count alone, worst over
-/// θi and the roughness, is below a quarter of the tolerance.
+/// Nodes in each panel of θe and of δφ for tolerances 1e-1 … 1e-10, measured (`nodes.rs`): the error of each
+/// count alone, worst over θi and the roughness, is below a quarter of the tolerance.
 fn nodes(tolerance: f64) -> [usize; 2] {
     const COUNTS: [[usize; 2]; 10] =
         [[3, 1], [4, 2], [4, 3], [5, 3], [6, 3], [6, 4], [7, 4], [8, 5], [8, 5], [9, 5]];

@@ -1,5 +1,5 @@
-//! Lagarde & de Rousiers 2014, *Moving Frostbite to Physically Based Rendering*, the listing of `Fr_DisneyDiffuse`.
-//! Twin of `shaders/diffuse/frostbite.wgsl`.
+//! Lagarde & de Rousiers 2014, *Moving Frostbite to Physically Based Rendering*, the listing of
+//! `Fr_DisneyDiffuse`. Twin of `shaders/diffuse/frostbite.wgsl`.
 //!
 //! ```text
 //! f = albedo/π · c (1 + (F90 − 1)(1 − μi)⁵)(1 + (F90 − 1)(1 − μe)⁵)
@@ -11,11 +11,11 @@
 //! | `roughness` | [0, 1] | – | none | r, the notes' linearRoughness: as it is, not squared |
 //! | `albedo` | [0, 1] | – | none | weighs A |
 //!
-//! At roughness 0 all is lost at grazing, on the way in and out: the notes meant it to leave room for a specular lobe. At 1
-//! the normal is a third darker than Lambert's, and edges lit from behind the viewer shine.
+//! At roughness 0 all is lost at grazing, on the way in and out. At 1 the normal is a third darker than
+//! Lambert's, and edges lit from behind the viewer shine.
 //!
-//! Kept: finite, bounded (6.25/(1.51 π)), not negative, reciprocal to the bit. Broken: energy, at roughness near 1 where ωi
-//! grazes: ρ_dh is up to 785/(504 · 1.51) = 1.0315. The notes renormalise the sum with a specular lobe to about 1.
+//! Kept: finite, bounded (6.25/(1.51 π)), not negative, reciprocal to the bit. Broken: energy, at roughness
+//! near 1 where ωi grazes: ρ_dh is up to 785/(504 · 1.51) = 1.0315.
 
 use super::grazing::{self, cos2_d, scatter};
 use crate::models::{Component, Integral, Model, Shape, decade, part};
@@ -42,8 +42,8 @@ pub(crate) static MODEL: Model = Model {
     reference: Some(reference::FROSTBITE),
 };
 
-/// Nodes in θe and δφ for tolerances 1e-1 … 1e-10, measured (`nodes.rs`): the error of each count alone, worst over
-/// θi and the roughness, is below a quarter of the tolerance.
+/// Nodes in θe and δφ for tolerances 1e-1 … 1e-10, measured (`nodes.rs`): the error of each count alone,
+/// worst over θi and the roughness, is below a quarter of the tolerance.
 fn nodes(tolerance: f64) -> [usize; 2] {
     const COUNTS: [[usize; 2]; 10] =
         [[3, 1], [4, 3], [5, 4], [6, 4], [7, 5], [8, 6], [9, 6], [9, 7], [10, 7], [11, 8]];

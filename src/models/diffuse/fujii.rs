@@ -6,19 +6,21 @@
 //! s = ωi·ωe − μi μe,   t = 1 where s ≤ 0, else max(μi, μe)
 //! ```
 //!
-//! Of the two pairs of A and B that the page gives this is the second, in which σ' is the share of the non-diffuse
-//! term: A = 1/(π + (π/2 − 2/3) σ'), B = σ' A. The first is fitted to the full Oren–Nayar and gains energy.
+//! Of the two pairs of A and B that the page gives this is the second, in which σ' is the share of the
+//! non-diffuse term: A = 1/(π + (π/2 − 2/3) σ'), B = σ' A. The first is fitted to the full Oren–Nayar and
+//! gains energy.
 //!
 //! | parameter | range | unit | default | |
 //! |---|---|---|---|---|
 //! | `roughness` | [0, 1] | – | none | σ' |
 //! | `albedo` | [0, 1] | – | none | of a facet, weighs A |
 //!
-//! σ' = 0 is Lambert, bit by bit. At 1 a full moon is flat and 22 % darker, without the ring that Oren–Nayar's has:
-//! the term goes on below 0 where ωe is ahead.
+//! σ' = 0 is Lambert, bit by bit. At 1 a full moon is flat and 22 % darker, without the ring that
+//! Oren–Nayar's has: the term goes on below 0 where ωe is ahead.
 //!
-//! Kept: finite, not negative, reciprocal to the bit; energy: ρ_dh ≤ 1, which it is where ωi grazes, whatever σ'.
-//! f has no bound where both directions graze on the same side, and at σ' = 1 it is 0 where both graze ahead.
+//! Kept: finite, not negative, reciprocal to the bit; energy: ρ_dh ≤ 1, which it is where ωi grazes, whatever
+//! σ'. f has no bound where both directions graze on the same side, and at σ' = 1 it is 0 where both graze
+//! ahead.
 
 use super::retro;
 use crate::models::{Component, Integral, Model, Shape, decade, part};
@@ -47,8 +49,8 @@ pub(crate) static MODEL: Model = Model {
 /// 1 + k, k = 1/2 − 2/(3π).
 const ONE_PLUS_K: f64 = 1.5 - 2.0 / 3.0 * FRAC_1_PI;
 
-/// Nodes in each panel of θe and of δφ for tolerances 1e-1 … 1e-10, measured (`nodes.rs`): the error of each count alone, worst over
-/// θi and the roughness, is below a quarter of the tolerance.
+/// Nodes in each panel of θe and of δφ for tolerances 1e-1 … 1e-10, measured (`nodes.rs`): the error of each
+/// count alone, worst over θi and the roughness, is below a quarter of the tolerance.
 fn nodes(tolerance: f64) -> [usize; 2] {
     const COUNTS: [[usize; 2]; 10] =
         [[3, 1], [3, 2], [4, 3], [4, 3], [5, 3], [5, 4], [6, 4], [7, 5], [7, 5], [7, 5]];

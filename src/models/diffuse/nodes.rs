@@ -46,8 +46,8 @@ fn worst(model: &Model, counts: [usize; 2]) -> f64 {
     worst
 }
 
-/// Prints the tables `COUNTS` of the lobes: for tolerances 1e-1 … 1e-10 the least count in θe and in δφ whose error
-/// alone, and that of the next, is below a quarter of the tolerance.
+/// Prints the tables `COUNTS` of the lobes: for tolerances 1e-1 … 1e-10 the least count in θe and in δφ whose
+/// error alone, and that of the next, is below a quarter of the tolerance.
 #[test]
 #[ignore = "prints tables"]
 fn print_the_counts() {

@@ -8,16 +8,16 @@
 //!
 //! | parameter | range | unit | default | |
 //! |---|---|---|---|---|
-//! | `roughness`, or `sigma` | [0, 1]; [0, π/2] | –; rad | none | σ = π/2 · roughness: the standard deviation of the facets' slope angle |
+//! | `roughness`, or `sigma` | [0, 1]; [0, π/2] | –; rad | none | σ = π/2 · roughness, of the facets' slope angle |
 //! | `albedo` | [0, 1] | – | none | of a facet, weighs A |
 //!
-//! σ = 0 is Lambert, bit by bit. At π/2 a full moon is nearly flat, 0.43 at the rim and 0.56 in the middle where
-//! Lambert's has 0 and 1; lit from aside, it shows a ring where B's term begins.
+//! σ = 0 is Lambert, bit by bit. At π/2 a full moon is nearly flat, 0.43 at the rim and 0.56 in the middle
+//! where Lambert's has 0 and 1; lit from aside, it shows a ring where B's term begins.
 //!
-//! Kept: finite, not negative, reciprocal to the bit. f itself has no bound where both directions graze on the same
-//! side (tan β), its integrals have. Broken: energy. A was fitted without what facets scatter twice, and for
-//! small σ it falls slower than B grows: where ωi grazes, ρ_dh = A + B/2, which is 1.0152 at σ = 0.200
-//! and below 1 from σ = 0.33 on. For the rest of the range it loses, up to 44 %.
+//! Kept: finite, not negative, reciprocal to the bit. f itself has no bound where both directions graze on
+//! the same side (tan β), its integrals have. Broken: energy. For small σ, A
+//! falls slower than B grows: where ωi grazes, ρ_dh = A + B/2, which is 1.0152 at σ = 0.200, the largest, and
+//! below 1 from σ = 0.33 on. For the rest of the range it loses, up to 44 %.
 
 use super::retro;
 use crate::models::{Component, Integral, Model, Shape, decade, part};
@@ -44,8 +44,8 @@ pub(crate) static MODEL: Model = Model {
     reference: Some(reference::OREN_NAYAR),
 };
 
-/// Nodes in each panel of θe and of δφ for tolerances 1e-1 … 1e-10, measured (`nodes.rs`): the error of each count alone, worst over
-/// θi and the roughness, is below a quarter of the tolerance.
+/// Nodes in each panel of θe and of δφ for tolerances 1e-1 … 1e-10, measured (`nodes.rs`): the error of each
+/// count alone, worst over θi and the roughness, is below a quarter of the tolerance.
 fn nodes(tolerance: f64) -> [usize; 2] {
     const COUNTS: [[usize; 2]; 10] =
         [[3, 1], [3, 2], [4, 3], [4, 3], [5, 3], [5, 4], [6, 4], [6, 5], [7, 5], [7, 5]];

@@ -6,8 +6,8 @@ use crate::reference::{Angles, Reference, definition};
 use crate::setting::Setting;
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI};
 
-/// Portsmouth, Kutz & Hill 2025, *EON: A Practical Energy-Preserving Rough Diffuse BRDF*, JCGT 14 (1), listing 1
-/// with the exact albedo. The parameter is ρ, the albedo of a facet; r the roughness:
+/// Portsmouth, Kutz & Hill 2025, *EON: A Practical Energy-Preserving Rough Diffuse BRDF*, JCGT 14 (1),
+/// listing 1 with the exact albedo. The parameter is ρ, the albedo of a facet; r the roughness:
 ///
 /// A = ρ f₁ + (ρₘ/π) (1 − E(μi)) (1 − E(μe)) / (1 − Ē), f₁ Fujii's form at σ' = r, ρₘ = ρ² Ē/(1 − ρ (1 − Ē)),
 /// E = A₁ + (r A₁/π) G(μ), G = S (θ − S μ) + 2/3 (S (1 − S³)/μ − S), S = sin θ,

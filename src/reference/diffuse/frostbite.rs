@@ -5,9 +5,9 @@ use crate::reference::{Angles, Reference, definition};
 use crate::setting::Setting;
 use std::f64::consts::FRAC_1_PI;
 
-/// Lagarde & de Rousiers 2014, *Moving Frostbite to Physically Based Rendering*, the listing of Fr_DisneyDiffuse:
-/// A = c (1 + (F90 − 1)(1 − μi)⁵)(1 + (F90 − 1)(1 − μe)⁵)/π, with the linear roughness r of the notes
-/// c = (1 − r) + r/1.51 (energyFactor) and F90 = r/2 (energyBias) + 2 r cos² θd.
+/// Lagarde & de Rousiers 2014, *Moving Frostbite to Physically Based Rendering*, the listing of
+/// Fr_DisneyDiffuse: A = c (1 + (F90 − 1)(1 − μi)⁵)(1 + (F90 − 1)(1 − μe)⁵)/π, with the linear roughness r of
+/// the notes c = (1 − r) + r/1.51 (energyFactor) and F90 = r/2 (energyBias) + 2 r cos² θd.
 pub static FROSTBITE: &dyn Reference = &Frostbite;
 
 struct Frostbite;
