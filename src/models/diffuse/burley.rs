@@ -19,7 +19,7 @@
 use super::grazing::{self, cos2_d, scatter};
 use crate::models::{Component, Integral, Model, Shape, decade, part};
 use crate::reference;
-use std::f64::consts::FRAC_1_PI;
+use std::f64::consts::FRAC_2_SQRT_PI;
 
 pub(crate) static MODEL: Model = Model {
     name: "burley",
@@ -35,10 +35,13 @@ pub(crate) static MODEL: Model = Model {
     integral: Integral::Smooth(nodes),
     lobe: |p, a, s| {
         let f90 = 0.5 + 2.0 * s.alpha * cos2_d(p, a);
-        [FRAC_1_PI * (scatter(p.mu_i, f90) * scatter(p.mu_e, f90)), 0.0]
+        [(INV_SQRT_PI * scatter(p.mu_i, f90)) * (INV_SQRT_PI * scatter(p.mu_e, f90)), 0.0]
     },
     reference: Some(reference::BURLEY),
 };
+
+/// 1/√π, once for each direction, as the shader has it.
+const INV_SQRT_PI: f64 = 0.5 * FRAC_2_SQRT_PI;
 
 /// Nodes in θe and δφ for tolerances 1e-1 … 1e-10, measured (`nodes.rs`): the error of each count alone,
 /// worst over θi and the roughness, is below a quarter of the tolerance.
