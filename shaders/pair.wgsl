@@ -10,12 +10,13 @@ struct Pair {
     mu_i: real,   // cos θi
     mu_e: real,   // cos θe
     bin: real,    // 1 / weight of this θe cell where it holds the mirror direction, else 0
-    alpha: real,  // of a row of values, else unused
+    own: real,    // α of a row of values; of an integral, the weight of this θe
 }
 
 struct Azimuth {
     sin2: real,   // sin²(δ/2)
     cos2: real,   // cos²(δ/2)
+    back: real,   // max(0, −cos δ) = max(0, cos(φi − φe)): 0 unless ωe is on the side of ωi
     weight: real, // of this δφ in an integral
     bin: real,    // 1 / weight of this δφ cell where it holds δφ = 0, else 0
 }

@@ -124,7 +124,7 @@ fn integrate(work: &Work, inner: &Inner, lobe: &Lobe, row: usize, k: usize) -> [
         Inner::Samples(work) => return work.sum(row, k, setting),
         Inner::Product { pairs, azimuths } => {
             for azimuth in azimuths {
-                add(azimuth.weight, (lobe.model.lobe)(&pairs[k], azimuth, setting));
+                add(pairs[k].weight * azimuth.weight, (lobe.model.lobe)(&pairs[k], azimuth, setting));
             }
         }
         Inner::Analytic { directional, mus } => return directional(mus[k], setting),

@@ -25,6 +25,8 @@ pub struct Pair {
     pub mu_e: f64,
     /// 1 / weight of this θe cell where it holds the mirror direction, else 0.
     pub bin: f64,
+    /// The weight of this θe in an integral whose directions have nodes of their own, else 1.
+    pub weight: f64,
 }
 
 /// What depends on δφ alone.
@@ -34,6 +36,9 @@ pub struct Azimuth {
     pub sin2: f64,
     /// cos²(δ/2)
     pub cos2: f64,
+    /// max(0, −cos δ) = max(0, cos(φi − φe)): 0 unless ωe is on the side of ωi. A factor of its own, as what
+    /// a lobe weighs it with may be 1/μ, and sin² − cos² has lost its digits near δ = π/2.
+    pub back: f64,
     /// The weight of this δφ in an integral.
     pub weight: f64,
     /// 1 / weight of this δφ cell where it holds δφ = 0, else 0.
@@ -63,6 +68,7 @@ impl Pair {
             mu_i: theta_i.cos(),
             mu_e: theta_e.cos(),
             bin: 0.0,
+            weight: 1.0,
         }
     }
 }
@@ -70,20 +76,21 @@ impl Pair {
 impl Pair {
     /// As the shader lays it out.
     pub(crate) fn to_array(self) -> [f64; 8] {
-        [self.hz2, self.dt2, self.ss, self.sd, self.mu_i, self.mu_e, self.bin, 0.0]
+        [self.hz2, self.dt2, self.ss, self.sd, self.mu_i, self.mu_e, self.bin, self.weight]
     }
 }
 
 impl Azimuth {
     /// As the shader lays it out.
-    pub(crate) fn to_array(self) -> [f64; 4] {
-        [self.sin2, self.cos2, self.weight, self.bin]
+    pub(crate) fn to_array(self) -> [f64; 5] {
+        [self.sin2, self.cos2, self.back, self.weight, self.bin]
     }
 
     /// The factors of δφ, rad.
     pub fn new(delta_phi: f64) -> Self {
         let (sin, cos) = (0.5 * delta_phi).sin_cos();
-        Self { sin2: sin * sin, cos2: cos * cos, weight: 0.0, bin: 0.0 }
+        let back = (-delta_phi.cos()).max(0.0);
+        Self { sin2: sin * sin, cos2: cos * cos, back, weight: 0.0, bin: 0.0 }
     }
 }
 
@@ -97,6 +104,6 @@ impl Half {
 }
 
 /// θ, or the angle whose cosine is [`MU_MIN`] if it is nearer to the horizon.
-fn off_horizon(theta: f64) -> f64 {
+pub(crate) fn off_horizon(theta: f64) -> f64 {
     theta.min(MU_MIN.acos())
 }

@@ -366,7 +366,7 @@ impl TablePlan {
         for Lobe { model, .. } in &self.lobes {
             let fits = match model.integral {
                 Integral::Slopes(_) => model.has_samplers() || self.rule.samples().is_none(),
-                Integral::Smooth(_) => self.rule.samples().is_none(),
+                Integral::Smooth(_) | Integral::Kinked(_) => self.rule.samples().is_none(),
                 Integral::Delta(_) => matches!(self.rule, Rule::Warped | Rule::Grid { .. }),
                 Integral::Unbounded(_) => self.quantity.evaluation == Evaluation::Value,
             };

@@ -193,7 +193,14 @@ impl<'a> Points<'a> {
             return Ok(());
         }
         match &mut self.place {
-            Place::Device(points) => points.evaluate(settings, angles, values),
+            Place::Device(points) => {
+                let on_device = |alphas: &Vec<f64>| -> Vec<f64> {
+                    let lobes = self.lobes.iter().zip(alphas);
+                    lobes.map(|(lobe, &alpha)| lobe.model.on_device(alpha)).collect()
+                };
+                let settings: Vec<_> = settings.iter().map(on_device).collect();
+                points.evaluate(&settings, angles, values)
+            }
             Place::Cpu => {
                 for (k, angles) in angles.chunks(CPU_CHUNK).enumerate() {
                     let factors: Vec<_> = angles.par_iter().map(Angles::factors).collect();

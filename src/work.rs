@@ -3,7 +3,7 @@
 
 use crate::axis::Variable;
 use crate::models::{Integral, Sampling, Slopes, decade};
-use crate::pair::{Azimuth, MU_MIN, Pair};
+use crate::pair::{Azimuth, MU_MIN, Pair, off_horizon};
 use crate::plan::{Lobe, Rule, TablePlan};
 use crate::quadrature::{Node, gauss_legendre, midpoint};
 use crate::quantity::Evaluation;
@@ -54,10 +54,20 @@ impl Work {
             Evaluation::Value => Self { alphas, kind: values(table) },
             Evaluation::Directional => integrals(table, lobe, alphas, &directions(table), &[1.0]),
             Evaluation::Hemispherical => {
-                // ρ_hh = ∫ ρ 2μ dμ with μ = u²: ρ turns at μ ≈ α, where u has nodes to spare.
                 let nodes = gauss_legendre(MEAN_NODES[decade(table.rule_tolerance())]);
-                let thetas: Vec<_> = nodes.iter().map(|node| (node.x * node.x).acos()).collect();
-                let weights: Vec<_> = nodes.iter().map(|n| 4.0 * n.x.powi(3) * n.weight).collect();
+                let [thetas, weights]: [Vec<_>; 2] = match lobe.model.integral {
+                    // ρ_hh = ∫ ρ sin 2θ dθ: a kink at θe = θi leaves odd powers of sin θ in ρ.
+                    Integral::Kinked(_) => {
+                        let thetas: Vec<_> = nodes.iter().map(|node| FRAC_PI_2 * node.x).collect();
+                        let weight = |n: &Node| FRAC_PI_2 * n.weight * (PI * n.x).sin();
+                        [thetas, nodes.iter().map(weight).collect()]
+                    }
+                    // ρ_hh = ∫ ρ 2μ dμ with μ = u²: ρ turns at μ ≈ α, where u has nodes to spare.
+                    _ => [
+                        nodes.iter().map(|node| (node.x * node.x).acos()).collect(),
+                        nodes.iter().map(|n| 4.0 * n.x.powi(3) * n.weight).collect(),
+                    ],
+                };
                 integrals(table, lobe, alphas, &thetas, &weights)
             }
         }
@@ -136,6 +146,17 @@ fn integrals(table: &TablePlan, lobe: &Lobe, alphas: Vec<f64>, thetas: &[f64], w
         let outer = weights.iter().flat_map(|w| grid.iter().map(move |cell| w * cell.weight)).collect();
         of(Inner::Product { pairs, azimuths }, outer)
     };
+    // Each direction has cells of its own, and each cell its weight with it.
+    let kinked = |[theta, phi]: [usize; 2]| {
+        let rule = gauss_legendre(theta);
+        let pairs = thetas.iter().flat_map(|&theta_i| {
+            let cells = panels(&rule, [0.0, off_horizon(theta_i), FRAC_PI_2]);
+            cells.into_iter().map(move |cell| Pair { weight: cell.weight, ..cell.pair(theta_i) })
+        });
+        let pairs = pairs.collect();
+        let outer = weights.iter().flat_map(|&weight| iter::repeat_n(weight, 2 * theta)).collect();
+        of(Inner::Product { pairs, azimuths: kinked_azimuths(phi) }, outer)
+    };
     let mus = || thetas.iter().map(|theta| theta.cos().max(MU_MIN)).collect();
     let sampled = |sampler: Sampler, slopes: &'static Slopes, by: &'static Sampling, samples: usize| {
         let work = SampleWork::new(sampler, slopes, by, mus(), samples);
@@ -162,6 +183,7 @@ fn integrals(table: &TablePlan, lobe: &Lobe, alphas: Vec<f64>, thetas: &[f64], w
             let [theta, phi] = nodes(table.rule_tolerance());
             smooth(gauss_cells(theta), gauss_azimuths(2 * phi))
         }
+        (_, Integral::Kinked(nodes)) => kinked(nodes(table.rule_tolerance())),
         (_, Integral::Slopes(slopes)) => {
             return slopes_work(table, lobe, slopes, [alphas, mus()], weights);
         }
@@ -248,13 +270,19 @@ fn grid_cells(n: usize) -> Vec<Cell> {
 
 /// Gauss–Legendre in θ, with cos θ sin θ.
 fn gauss_cells(n: usize) -> Vec<Cell> {
-    gauss_legendre(n)
-        .iter()
-        .map(|node| {
-            let theta = FRAC_PI_2 * node.x;
-            Cell { theta, weight: FRAC_PI_2 * node.weight * theta.sin() * theta.cos(), edges: None }
+    panels(&gauss_legendre(n), [0.0, FRAC_PI_2])
+}
+
+/// The same in each panel between two of `breaks`.
+fn panels<const N: usize>(rule: &[Node], breaks: [f64; N]) -> Vec<Cell> {
+    let panel = |ends: &[f64]| {
+        let (start, width) = (ends[0], ends[1] - ends[0]);
+        rule.iter().map(move |node| {
+            let theta = start + width * node.x;
+            Cell { theta, weight: width * node.weight * theta.sin() * theta.cos(), edges: None }
         })
-        .collect()
+    };
+    breaks.windows(2).flat_map(panel).collect()
 }
 
 /// `n` midpoints in φ ∈ [0, 2π), of which the half in δφ ∈ [0, π] is kept with twice the weight: the
@@ -275,4 +303,17 @@ fn grid_azimuths(n: usize) -> Vec<Azimuth> {
 fn gauss_azimuths(n: usize) -> Vec<Azimuth> {
     let azimuth = |node: &Node| Azimuth { weight: 2.0 * PI * node.weight, ..Azimuth::new(PI * node.x) };
     gauss_legendre(n / 2).iter().map(azimuth).collect()
+}
+
+/// Gauss–Legendre, `n` nodes in each of [0, π/2] and [π/2, π], with their mirror images.
+fn kinked_azimuths(n: usize) -> Vec<Azimuth> {
+    let rule = gauss_legendre(n);
+    let half = |start: f64| {
+        let azimuth = move |node: &Node| Azimuth {
+            weight: PI * node.weight,
+            ..Azimuth::new(start + FRAC_PI_2 * node.x)
+        };
+        rule.iter().map(azimuth)
+    };
+    half(0.0).chain(half(FRAC_PI_2)).collect()
 }

@@ -9,6 +9,7 @@ struct Point {
     mu_e: real,
     sin2: real, // and of an Azimuth
     cos2: real,
+    back: real,
 }
 
 @group(0) @binding(2) var<storage, read> points: array<Point>;
@@ -22,6 +23,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let point = min(id.x, job.end - 1u);
     let p = points[point];
     let pair = Pair(p.hz2, p.dt2, p.ss, p.sd, p.mu_i, p.mu_e, 0.0, 0.0);
-    let azimuth = Azimuth(p.sin2, p.cos2, 0.0, 0.0);
+    let azimuth = Azimuth(p.sin2, p.cos2, p.back, 0.0, 0.0);
     write(job.base + point, lobe(pair, azimuth, job.alpha, lobe_row(pair, job.alpha)));
 }

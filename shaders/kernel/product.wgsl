@@ -25,5 +25,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
         sum += inner;
     }
-    write(invocation - job.base, sum);
+    write(invocation - job.base, pair.own * sum);
 }

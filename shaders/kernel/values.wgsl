@@ -6,6 +6,7 @@
 struct Quad {
     sin2: real4, // sin²(δ/2)
     cos2: real4, // cos²(δ/2)
+    back: real4, // max(0, −cos δ)
 }
 
 /// A row, and where it is stored.
@@ -44,17 +45,17 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 fn row_at(row: u32) -> Row {
     let there = min(row, job.end - 1u);
     let pair = rows[there];
-    return Row(pair, lobe_row(pair, pair.alpha), (there * job.azimuths + job.nodes) * CHANNELS, there == row);
+    return Row(pair, lobe_row(pair, pair.own), (there * job.azimuths + job.nodes) * CHANNELS, there == row);
 }
 
 fn evaluate(row: Row, quad: u32, z: Quad, w: Weights) {
     if ADD && !row.is_there {
         return;
     }
-    let a0 = lobe(row.pair, Azimuth(z.sin2.x, z.cos2.x, 0.0, 0.0), row.pair.alpha, row.lobe);
-    let a1 = lobe(row.pair, Azimuth(z.sin2.y, z.cos2.y, 0.0, 0.0), row.pair.alpha, row.lobe);
-    let a2 = lobe(row.pair, Azimuth(z.sin2.z, z.cos2.z, 0.0, 0.0), row.pair.alpha, row.lobe);
-    let a3 = lobe(row.pair, Azimuth(z.sin2.w, z.cos2.w, 0.0, 0.0), row.pair.alpha, row.lobe);
+    let a0 = lobe(row.pair, Azimuth(z.sin2.x, z.cos2.x, z.back.x, 0.0, 0.0), row.pair.own, row.lobe);
+    let a1 = lobe(row.pair, Azimuth(z.sin2.y, z.cos2.y, z.back.y, 0.0, 0.0), row.pair.own, row.lobe);
+    let a2 = lobe(row.pair, Azimuth(z.sin2.z, z.cos2.z, z.back.z, 0.0, 0.0), row.pair.own, row.lobe);
+    let a3 = lobe(row.pair, Azimuth(z.sin2.w, z.cos2.w, z.back.w, 0.0, 0.0), row.pair.own, row.lobe);
     store(row.first + quad * CHANNELS, w, a0, a1, a2, a3);
 }
 

@@ -311,12 +311,13 @@ impl Baker {
         output: &wgpu::Buffer,
         steps: &mut Vec<Step>,
     ) -> Result<()> {
-        const BYTES: u64 = VALUE_WINDOW as u64 * 32;
+        const QUAD: u64 = 48;
+        const BYTES: u64 = VALUE_WINDOW as u64 * QUAD;
         let pipeline = &self.pipeline(stage.kernel, stage.model, stage.channels, stage.precision)?;
         let rows = self.init(bytemuck::cast_slice(&rows.of(units)), wgpu::BufferUsages::STORAGE);
         for quad in (0..stage.per_unit).step_by(VALUE_WINDOW) {
             let columns = VALUE_WINDOW.min(stage.per_unit - quad);
-            let (offset, size) = (quad as u64 * 32, std::num::NonZeroU64::new(BYTES));
+            let (offset, size) = (quad as u64 * QUAD, std::num::NonZeroU64::new(BYTES));
             let window = wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: quads, offset, size });
             let rows_per_step =
                 (EVALUATIONS_PER_DISPATCH / (columns * stage.cost)).clamp(1, ROWS_PER_DISPATCH);

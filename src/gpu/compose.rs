@@ -52,7 +52,7 @@ pub enum Kernel {
 /// f64, what every device binds.
 pub(super) const COARSE_NODES: usize = 2048;
 
-/// Rows and quads of azimuths that one dispatch of values takes: 32 bytes each in a uniform buffer, of which
+/// Rows and quads of azimuths that one dispatch of values takes: 48 bytes each in a uniform buffer, of which
 /// every device binds 64 KiB.
 pub(super) const VALUE_WINDOW: usize = 1024;
 

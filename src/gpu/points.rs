@@ -30,7 +30,7 @@ pub(crate) struct Points<'a> {
 }
 
 /// `Point` of `shaders/kernel/points.wgsl`.
-type Factors = [f32; 8];
+type Factors = [f32; 9];
 
 /// One of two that take turns.
 struct Slot {
@@ -142,7 +142,7 @@ impl<'a> Points<'a> {
 
 fn factors((pair, azimuth): (Pair, Azimuth)) -> Factors {
     let Pair { hz2, dt2, ss, sd, mu_i, mu_e, .. } = pair;
-    [hz2, dt2, ss, sd, mu_i, mu_e, azimuth.sin2, azimuth.cos2].map(|x| x as f32)
+    [hz2, dt2, ss, sd, mu_i, mu_e, azimuth.sin2, azimuth.cos2, azimuth.back].map(|x| x as f32)
 }
 
 /// 0..`n` in pieces of `most`.

@@ -92,6 +92,7 @@ impl Stages {
     ) -> Result<Self> {
         let upload = Upload { baker, precision };
         let channels = lobe.weights.len();
+        let alphas: Vec<_> = work.alphas.iter().map(|&alpha| lobe.model.on_device(alpha)).collect();
         match &work.kind {
             WorkKind::Values { pairs, azimuths } => Ok(Self {
                 inner: Stage {
@@ -101,7 +102,7 @@ impl Stages {
                     precision: Precision::F32,
                     job: Job::new(lobe, 1.0),
                     inputs: vec![upload.quads(azimuths)],
-                    rows: Some(Rows::new(&work.alphas, pairs)),
+                    rows: Some(Rows::new(&alphas, pairs)),
                     per_unit: azimuths.len().div_ceil(4),
                     units: 1,
                     cost: 4,
@@ -110,7 +111,7 @@ impl Stages {
                 sources: None,
             }),
             WorkKind::Integrals { inner, outer } => {
-                let stage = Stage::inner(&upload, inner, &work.alphas)?;
+                let stage = Stage::inner(&upload, inner, &alphas)?;
                 let parameters = Job::new(lobe, 1.0).parameters;
                 let job = Job { parameters, ..stage.job };
                 let inner = Stage { model: Some(lobe.model), per_unit: inner.count(), job, ..stage };
@@ -348,16 +349,16 @@ impl Upload<'_> {
         self.reals(azimuths.iter().map(|azimuth| azimuth.to_array()).collect::<Vec<_>>().as_flattened())
     }
 
-    /// Azimuths of values by fours, sin² and then cos², in whole windows.
+    /// Azimuths of values by fours, sin², cos² and what is back, in whole windows.
     fn quads(&self, azimuths: &[Azimuth]) -> wgpu::Buffer {
         let four = |four: &[Azimuth]| {
             // The last one fills the last quad.
             let of = |k: usize| &four[k.min(four.len() - 1)];
             let at = |get: fn(&Azimuth) -> f64| [0, 1, 2, 3].map(|k| get(of(k)) as f32);
-            [at(|a| a.sin2), at(|a| a.cos2)]
+            [at(|a| a.sin2), at(|a| a.cos2), at(|a| a.back)]
         };
         let mut quads: Vec<_> = azimuths.chunks(4).map(four).collect();
-        quads.resize(quads.len().next_multiple_of(VALUE_WINDOW), [[0.0; 4]; 2]);
+        quads.resize(quads.len().next_multiple_of(VALUE_WINDOW), [[0.0; 4]; 3]);
         self.baker.init(bytemuck::cast_slice(&quads), wgpu::BufferUsages::UNIFORM)
     }
 

@@ -92,6 +92,8 @@ pub struct Shape {
     pub least: f64,
     /// The power of the roughness in it: measure = most · roughnessᵖ.
     power: i32,
+    /// Whether it is a share σ whose rest 1 − σ matters as much: shaders get σ/(1 − σ).
+    odds: bool,
 }
 
 /// A number that a model takes beside its roughness and the weights of its components.
@@ -138,9 +140,12 @@ pub struct Part {
 pub enum Integral {
     /// In slopes of the microfacet normal, for lobes of any width.
     Slopes(&'static Slopes),
-    /// Gauss–Legendre in θe, midpoints in δφ: for lobes as wide as the hemisphere. How many of each
+    /// Gauss–Legendre in θe and in δφ ∈ [0, π]: for lobes as wide as the hemisphere. How many of each
     /// meet a tolerance.
     Smooth(fn(tolerance: f64) -> [usize; 2]),
+    /// The same where f is smooth but for kinks at θe = θi, and where ωi and ωe are perpendicular in azimuth:
+    /// panels end there. How many of each in each of the two panels of θe, and of δφ ∈ [0, π].
+    Kinked(fn(tolerance: f64) -> [usize; 2]),
     /// In closed form: (A, B) of ρ(μ). Such a model is a delta and has no values.
     Delta(fn(mu: f64, &Setting) -> [f64; 2]),
     /// Not at all, and why: ρ has no bound, so that no absolute tolerance holds. Such a model has values
@@ -207,15 +212,26 @@ pub const ALPHA_MIN_VALUE: f64 = 1e-6;
 /// (α/μ)² = 2e-10.
 pub const ALPHA_MIN_INTEGRAL: f64 = 1e-12;
 
-/// The models by the names that recipes begin from; [`MICROFACETS`] and [`MIRRORS`] have the siblings of those
-/// that are made of terms.
-pub static MODELS: [&Model; 5] = [
-    &diffuse::lambert::MODEL,
-    &diffuse::gltf_diffuse::MODEL,
-    &microfacet::GGX,
-    &microfacet::BECKMANN,
-    &mirror::MODEL,
-];
+/// [`MODELS`] from the list of them.
+macro_rules! models {
+    ($($model:path),* $(,)?) => {
+        /// The models by the names that recipes begin from; [`MICROFACETS`] and [`MIRRORS`] have the
+        /// siblings of those that are made of terms.
+        pub static MODELS: [&Model; [$(stringify!($model)),*].len()] = [$(&$model),*];
+    };
+}
+models! {
+    diffuse::lambert::MODEL,
+    diffuse::gltf_diffuse::MODEL,
+    diffuse::oren_nayar::MODEL,
+    diffuse::fujii::MODEL,
+    diffuse::eon::MODEL,
+    diffuse::burley::MODEL,
+    diffuse::frostbite::MODEL,
+    microfacet::GGX,
+    microfacet::BECKMANN,
+    mirror::MODEL,
+}
 
 /// The finest tolerance that the tables of node counts know.
 pub(crate) const FINEST: f64 = 1e-10;
@@ -279,10 +295,10 @@ impl Shape {
         most: 1.0,
         least: ALPHA_MIN_VALUE,
         power: 2,
+        odds: false,
     };
 
     /// The roughness as it is.
-    #[expect(dead_code, reason = "diffuse models that are being written take it")]
     const ROUGHNESS: Self = Self {
         name: "roughness",
         summary: "the roughness as it is",
@@ -290,10 +306,10 @@ impl Shape {
         most: 1.0,
         least: 0.0,
         power: 1,
+        odds: false,
     };
 
     /// σ of slopes as angles, rad.
-    #[expect(dead_code, reason = "diffuse models that are being written take it")]
     const SIGMA: Self = Self {
         name: "sigma",
         summary: "the standard deviation of the facets' slope angle, sigma = π/2 · roughness",
@@ -301,11 +317,20 @@ impl Shape {
         most: FRAC_PI_2,
         least: 0.0,
         power: 1,
+        odds: false,
     };
+
+    /// The roughness as it is, as the share of what vanishes with it: f32 has both ends in full as odds alone.
+    const SHARE: Self = Self { odds: true, ..Self::ROUGHNESS };
 
     /// The model's own measure of a roughness.
     pub fn measure(&self, roughness: f64) -> f64 {
         self.most * roughness.powi(self.power)
+    }
+
+    /// What shaders get of a measure: it, or its odds up to 1e30, beyond which f does not tell them from infinite.
+    pub(crate) fn on_device(&self, measure: f64) -> f64 {
+        if self.odds { (measure / (1.0 - measure)).min(1e30) } else { measure }
     }
 
     /// The roughness of a measure.
@@ -336,6 +361,11 @@ impl Model {
     /// Whether the rules that sample can do its integrals.
     pub fn has_samplers(&self) -> bool {
         matches!(self.integral, Integral::Slopes(slopes) if slopes.sampling.is_some())
+    }
+
+    /// What shaders get of a shape, in the model's own measure.
+    pub(crate) fn on_device(&self, alpha: f64) -> f64 {
+        self.shape.map_or(alpha, |shape| shape.on_device(alpha))
     }
 
     /// Whether a lobe of this roughness is a delta, as far as values go.

@@ -13,6 +13,8 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Settings of the scan.
 const SETTINGS: usize = 64;
+/// Steps of a sweep.
+const SWEEP: u32 = 16;
 /// Rounds of the search, each of so many settings and angles around the largest so far; the distance falls
 /// by [`CLOSER`] a round, to 1e-4 of the range.
 const ROUNDS: usize = 9;
@@ -36,7 +38,9 @@ pub(super) fn check(
     let mut scan = thetas();
     // Towards grazing by decades of cos θ.
     scan.extend((2..12).map(|k| FRAC_PI_2 - 10f64.powf(-0.5 * f64::from(k))));
-    let mut places = places(probe.subject, &settings(&parameters, SETTINGS), &scan, channels)?;
+    let mut all = settings(&parameters, SETTINGS);
+    all.extend(sweeps(&parameters));
+    let mut places = places(probe.subject, &all, &scan, channels)?;
     observer.advance(0.5)?;
     let mut chance = Chance(0);
     let mut distance = 0.1;
@@ -55,6 +59,19 @@ pub(super) fn check(
     }
     let least = places.iter().map(|place| place.rho.value).fold(f64::INFINITY, f64::min);
     Ok(Some(finding(probe, largest(&places), least, tolerance)))
+}
+
+/// Each parameter between its ends, the others at their upper ones: ρ_dh is linear in weights, so that a gain
+/// between the ends of a shape shows with all weights at their most, and may show nowhere else.
+pub(super) fn sweeps(parameters: &[Parameter]) -> impl Iterator<Item = Vec<f64>> {
+    let free = (0..parameters.len()).filter(|&k| parameters[k].low < parameters[k].high);
+    free.flat_map(move |k| {
+        (1..SWEEP).map(move |j| {
+            let mut setting: Vec<_> = parameters.iter().map(|parameter| parameter.high).collect();
+            setting[k] = parameters[k].at(f64::from(j) / f64::from(SWEEP));
+            setting
+        })
+    })
 }
 
 /// The largest channel at each setting and angle.

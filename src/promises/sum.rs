@@ -1,6 +1,6 @@
 //! Our own models as subjects: a sum of lobes, with parameters that are fixed or have a range.
 
-use super::{Angles, Declared, Parameter, Subject, Tolerances};
+use super::{Angles, Declared, Parameter, Subject, Tolerances, albedo};
 use crate::axis::{Axis, Variable};
 use crate::bake::{Evaluator, Stages, Unobserved};
 use crate::check::Check;
@@ -248,15 +248,16 @@ impl Subject for Sum<'_> {
         &self.declared
     }
 
-    /// Whether these parameters can show a declared gain of energy is for the reference to say. ρ_dh is linear
-    /// in each weight, so its maximum over weights is at a corner of the ranges; of the roughness both ends are
-    /// tried, and θi on a list. Where the reference gains more than the device's tolerance there, the device
-    /// must too.
+    /// Whether these parameters can show a declared gain of energy is for the reference to say. ρ_dh is
+    /// linear in each weight, so its maximum over weights is at a corner of the ranges; of a shape both ends
+    /// are tried and what is between, and θi on a list. Where the reference gains more than the device's
+    /// tolerance there, the device must too.
     fn shows(&self, _property: &str) -> bool {
-        let free: Vec<_> = self.whole.iter().collect();
-        (0..1usize << free.len().min(8)).any(|corner| {
-            let end = |(k, p): (usize, &&Parameter)| if corner >> k & 1 == 1 { p.high } else { p.low };
-            let setting: Vec<_> = free.iter().enumerate().map(end).collect();
+        let corners = (0..1usize << self.whole.len().min(8)).map(|corner| {
+            let end = |(k, p): (usize, &Parameter)| if corner >> k & 1 == 1 { p.high } else { p.low };
+            self.whole.iter().enumerate().map(end).collect()
+        });
+        corners.chain(albedo::sweeps(&self.whole)).any(|setting: Vec<f64>| {
             let thetas = [0.0, 60.0, 80.0, 87.0, 89.5].map(f64::to_radians).into_iter().chain([FRAC_PI_2]);
             thetas.into_iter().any(|theta| {
                 self.reference_rho(&setting, theta)

@@ -11,11 +11,20 @@ const INNER: f64 = 1e-12;
 ///
 /// θi is where f has a scale to change: below it the half vector leans one way, above it the other.
 pub(super) fn rho_dh(f: impl Fn(&Angles) -> [f64; 2], mu: f64) -> [f64; 2] {
+    rho_dh_between(&[0.0, PI], f, mu)
+}
+
+/// The same for an f with a kink where ωi and ωe are perpendicular in azimuth.
+pub(super) fn rho_dh_kinked(f: impl Fn(&Angles) -> [f64; 2], mu: f64) -> [f64; 2] {
+    rho_dh_between(&[0.0, FRAC_PI_2, PI], f, mu)
+}
+
+fn rho_dh_between(azimuths: &[f64], f: impl Fn(&Angles) -> [f64; 2], mu: f64) -> [f64; 2] {
     let theta_i = mu.clamp(MIN_MU, 1.0).acos();
     let ring = |theta_e: f64| {
         let at = |delta_phi| f(&Angles { theta_i, theta_e, delta_phi });
         let weight = 2.0 * theta_e.cos() * theta_e.sin();
-        integrate(at, &[0.0, PI], INNER).value_or_nan().map(|ring| weight * ring)
+        integrate(at, azimuths, INNER).value_or_nan().map(|ring| weight * ring)
     };
     integrate(ring, &[0.0, theta_i, FRAC_PI_2], OUTER).value_or_nan()
 }

@@ -22,7 +22,10 @@ mod tests;
 
 use crate::setting::Setting;
 
-pub use diffuse::{gltf::GLTF_DIFFUSE, lambert::LAMBERT};
+pub use diffuse::{
+    burley::BURLEY, eon::EON, frostbite::FROSTBITE, fujii::FUJII, gltf::GLTF_DIFFUSE, lambert::LAMBERT,
+    oren_nayar::OREN_NAYAR,
+};
 pub use directions::{Angles, MIN_MU};
 pub(crate) use fresnel::{Fresnel, none::Constant, schlick::Schlick};
 pub(crate) use masking::{
