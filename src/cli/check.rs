@@ -26,7 +26,7 @@ pub struct Args {
     /// Of the scene, only this material
     #[arg(long, value_name = "NAME", requires = "scene")]
     material: Option<String>,
-    /// A model: lambert, gltf_diffuse, ggx or mirror
+    /// A model, by its name in `gonio models`
     #[arg(long, value_name = "NAME", conflicts_with = "wgsl")]
     model: Option<String>,
     /// A WGSL file with a BRDF of your own
