@@ -2,7 +2,7 @@
 
 use super::{HEADING, print, print_json};
 use crate::error::Result;
-use crate::models::{self, Component, FRESNELS, Integral, MASKINGS, MODELS, Model, Shape, Term};
+use crate::models::{self, Component, FRESNELS, Integral, MASKINGS, MODELS, Metal, Model, Shape, Term};
 use serde_json::{Value, json};
 
 #[derive(clap::Args)]
@@ -60,11 +60,12 @@ fn one(model: &Model, as_json: bool) -> Result<()> {
     let (parameters, promises) = (parameters(model), promises(model));
     if as_json {
         let parameter = |p: &Parameter| json!({ "name": p.name, "range": p.range, "unit": p.unit, "default": p.default, "what": p.what });
+        let metal = |m: &Metal| json!({ "name": m.name, "eta": m.eta, "k": m.k, "source": m.source });
         return print_json(&json!({
             "name": model.name, "summary": model.summary, "source": model.source,
             "parameters": parameters.iter().map(parameter).collect::<Vec<_>>(),
             "parts": model.parts.iter().map(|part| part.name).collect::<Vec<_>>(),
-            "promises": promises,
+            "metals": model.metals().iter().map(metal).collect::<Vec<_>>(), "promises": promises,
         }));
     }
     print(&format!("{HEADING}{}{HEADING:#}  {}", model.name, model.summary))?;
@@ -78,6 +79,12 @@ fn one(model: &Model, as_json: bool) -> Result<()> {
     print(&format!("{HEADING}parts{HEADING:#}"))?;
     for part in model.parts {
         print(&format!("  shaders/{}.wgsl", part.name))?;
+    }
+    if !model.metals().is_empty() {
+        print(&format!("{HEADING}metals{HEADING:#}"))?;
+    }
+    for Metal { name, eta, k, source } in model.metals() {
+        print(&format!("  {name:10}eta = {eta:?}, k = {k:?}; {source}"))?;
     }
     print(&format!("{HEADING}promises{HEADING:#}"))?;
     promises.iter().try_for_each(|promise| print(&format!("  {promise}")))
@@ -113,6 +120,15 @@ fn parameters(model: &Model) -> Vec<Parameter> {
         default: p.default.map(|x| x.to_string()),
         what: p.summary.into(),
     }));
+    if !model.metals().is_empty() {
+        all.push(Parameter {
+            name: "metal",
+            range: model.metals().iter().map(|metal| metal.name).collect::<Vec<_>>().join(" | "),
+            unit: "",
+            default: Some("none".into()),
+            what: "in place of eta and k, for R, G and B at 611.4, 549.1 and 464.2 nm".into(),
+        });
+    }
     all.extend(model.terms().into_iter().map(|(name, terms, term)| Parameter {
         name,
         range: terms.iter().map(|term| term.name).collect::<Vec<_>>().join(" | "),

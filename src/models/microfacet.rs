@@ -4,18 +4,20 @@
 //! A model is put together at compile time, so that the CPU path calls nothing by pointer within an
 //! integrand; what is put together at run time is names.
 
-use super::fresnel::{Fresnel, none::Constant, schlick::Schlick};
+use super::fresnel::{
+    Fresnel, conductor::Conductor, dielectric::Dielectric, f82::F82, none::Constant, schlick::Schlick,
+};
 use super::masking::{
     Masking, none::Unmasked, smith_correlated::SmithCorrelated, smith_separable::SmithSeparable,
 };
 use super::ndf::{Map, Ndf, ggx::Ggx};
 use super::{
-    Integral, Model, Part, Sampling, Shape, SlopeCounts, SlopeMap, Slopes, Term, is_fine, mirror, part,
+    Integral, Metal, Model, Part, Sampling, Shape, SlopeCounts, SlopeMap, Slopes, Term, is_fine, mirror, part,
 };
 use crate::error::{Error, Result};
 use crate::pair::{Azimuth, Half, Pair};
 use crate::reference;
-use crate::setting::Setting;
+use crate::setting::{Parameters, Setting};
 use std::marker::PhantomData;
 use std::sync::LazyLock;
 
@@ -28,6 +30,10 @@ pub struct Microfacet {
     pub masking: Option<Term>,
     /// The Fresnel term.
     pub fresnel: Term,
+    /// Names that stand for its parameters.
+    pub(crate) metals: &'static [Metal],
+    /// Why its parameters are refused, if they are.
+    pub(crate) refused: fn(&Parameters) -> Option<&'static str>,
 }
 
 /// The parts there are: the default is the first of its kind, and an entry here is all that a new one takes.
@@ -60,7 +66,7 @@ macro_rules! parts {
 parts! {
     ndfs: Ggx;
     maskings: SmithCorrelated, SmithSeparable, Unmasked;
-    fresnels: Schlick, Constant;
+    fresnels: Schlick, Constant, Dielectric, Conductor, F82;
 }
 
 /// GGX with the defaults.
@@ -119,7 +125,7 @@ fn term(kind: &str, terms: &'static [Term], name: &str) -> Result<&'static Term>
 /// The model with a name that tells its terms: the NDF's alone with the defaults, else all of them. It is made
 /// once and lives as long as the process.
 fn named(model: Model) -> Model {
-    let Some(Microfacet { ndf, masking, fresnel }) = model.microfacet else { return model };
+    let Some(Microfacet { ndf, masking, fresnel, .. }) = model.microfacet else { return model };
     let terms: Vec<_> = [ndf].into_iter().chain(masking).chain([fresnel]).collect();
     let keep = |text: fn(&Term) -> &'static str, between: &str| -> &'static str {
         terms.iter().map(|&term| text(term)).collect::<Vec<_>>().join(between).leak()
@@ -161,7 +167,13 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         reference: Some(&Self::REFERENCE),
     };
 
-    const TERMS: Microfacet = Microfacet { ndf: N::TERM, masking: Some(M::TERM), fresnel: F::TERM };
+    const TERMS: Microfacet = Microfacet {
+        ndf: N::TERM,
+        masking: Some(M::TERM),
+        fresnel: F::TERM,
+        metals: F::METALS,
+        refused: F::refused,
+    };
 
     const PARTS: [Part; 4] = [F::TERM.part, N::TERM.part, M::TERM.part, part!("lobe/microfacet")];
 
@@ -257,10 +269,36 @@ mod tests {
         }
     }
 
+    /// Extremes of a model's parameters, and what is between.
+    fn extremes(model: &Model) -> Vec<Parameters> {
+        let mut all = vec![model.defaults()];
+        for parameter in model.parameters() {
+            let values = match parameter.name {
+                "eta" => vec![0.05, 1.0, 1.0 + 2f64.powi(-22), 1.0001, 1.01, 1.1, 1.5, 3.0, 1e3],
+                "k" => vec![0.0, 1e-3, 0.3, 3.0, 100.0],
+                _ => vec![
+                    parameter.range[0],
+                    0.5 * (parameter.range[0] + parameter.range[1]),
+                    parameter.range[1],
+                ],
+            };
+            let with = |p: &Parameters, value: f64| {
+                let mut p = *p;
+                p[parameter.place] = value.clamp(parameter.range[0], parameter.range[1]);
+                p
+            };
+            all = all.iter().flat_map(|p| values.iter().map(move |&value| with(p, value))).collect();
+        }
+        all.retain(|p| model.refused(p).is_none());
+        all.dedup();
+        all
+    }
+
     /// The error model was made for correlated heights and Schlick: the others keep the tolerances by what they
     /// add to it. Without `near`, separable Smith is off by 1.3 times 1e-5 and 1.7 times 1e-6.
     #[test]
     fn the_error_model_holds_for_every_combination() {
+        let mut failed = Vec::new();
         for model in MICROFACETS.iter() {
             let Integral::Slopes(slopes) = model.integral else { continue };
             let rule = |mu: f64, s: &Setting, tolerance: f64, counts: [SlopeCounts; 2]| {
@@ -281,13 +319,16 @@ mod tests {
                 }
                 sum
             };
-            let worst: Vec<[f64; 9]> = (0..300)
+            let extremes = extremes(model);
+            let count = if extremes.len() == 1 { 300 } else { 100 };
+            let worst: Vec<[f64; 9]> = (0..count * extremes.len())
                 .into_par_iter()
-                .map(|k| {
+                .map(|n| {
+                    let (k, parameters) = (n / extremes.len(), extremes[n % extremes.len()]);
                     // Additive recurrences of two irrationals: even over both logarithms.
                     let (u, v) = ((k as f64 * 0.754_877_666).fract(), (k as f64 * 0.569_840_291).fract());
                     let (mu, alpha) = (2f64.powf(-24.0 * u * u), 2f64.powf(-20.0 * v * v));
-                    let setting = Setting { alpha, parameters: model.defaults() };
+                    let setting = Setting { alpha, parameters };
                     let exact = rule(mu, &setting, 1e-10, [SlopeCounts { azimuths: 100, nodes: 160 }; 2]);
                     std::array::from_fn(|d| {
                         let tolerance = 10f64.powi(-1 - d as i32);
@@ -297,9 +338,17 @@ mod tests {
                     })
                 })
                 .collect();
+            for (j, p) in extremes.iter().enumerate() {
+                let of = worst.iter().skip(j).step_by(extremes.len());
+                let most = of.fold([0.0; 9], |a, b| std::array::from_fn(|d| f64::max(a[d], b[d])));
+                println!("{} {:?}: {}", model.name, &p[4..6], most.map(|x| format!("{x:.2}")).join(" "));
+            }
             let most = worst.into_iter().reduce(|a, b| std::array::from_fn(|d| a[d].max(b[d]))).unwrap();
             println!("{}: {}", model.name, most.map(|x| format!("{x:.2}")).join(" "));
-            assert!(most.iter().all(|&share| share <= 1.0), "{}: {most:?} of the tolerance", model.name);
+            if most.iter().any(|&share| share > 1.0) {
+                failed.push(format!("{}: {most:?} of the tolerance", model.name));
+            }
         }
+        assert!(failed.is_empty(), "{failed:#?}");
     }
 }

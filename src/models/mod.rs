@@ -11,6 +11,7 @@ mod microfacet;
 mod mirror;
 mod ndf;
 
+pub use fresnel::metals::{METALS, Metal};
 pub use microfacet::{FRESNELS, MASKINGS, MICROFACETS, MIRRORS, Microfacet};
 
 use crate::error::{Error, Result};
@@ -242,7 +243,6 @@ impl Component {
     const DIFFUSE: [Self; 1] = [Self { name: "A", weight: "albedo", default: None }];
 
     /// What of an exact Fresnel term is shown: all of it, unless an artist dims it.
-    #[expect(dead_code, reason = "the exact terms take it")]
     const SPECULAR: [Self; 1] = [Self { name: "A", weight: "specular", default: Some(1.0) }];
 
     /// What Schlick's Fresnel splits a lobe into.
@@ -315,6 +315,16 @@ impl Model {
     /// The model's own measure of a roughness; 0 where it takes none.
     pub fn measure(&self, roughness: f64) -> f64 {
         self.shape.map_or(0.0, |shape| shape.measure(roughness))
+    }
+
+    /// Names that stand for its index, η and k of each channel, if it has one.
+    pub fn metals(&self) -> &'static [Metal] {
+        self.microfacet.map_or(&[], |made| made.metals)
+    }
+
+    /// Why these parameters are refused, if they are, though each is in its range.
+    pub(crate) fn refused(&self, parameters: &Parameters) -> Option<&'static str> {
+        (self.microfacet?.refused)(parameters)
     }
 
     /// Whether a lobe of this roughness is a delta, as far as values go.

@@ -24,7 +24,9 @@ use crate::setting::Setting;
 
 pub use diffuse::{gltf::GLTF_DIFFUSE, lambert::LAMBERT};
 pub use directions::{Angles, MIN_MU};
-pub(crate) use fresnel::{Fresnel, none::Constant, schlick::Schlick};
+pub(crate) use fresnel::{
+    Fresnel, conductor::Conductor, dielectric::Dielectric, f82::F82, none::Constant, schlick::Schlick,
+};
 pub(crate) use masking::{
     Masking, none::Unmasked, smith_correlated::SmithCorrelated, smith_separable::SmithSeparable,
 };
