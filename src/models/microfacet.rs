@@ -196,10 +196,11 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         sampling: Sampling { part: N::SAMPLES, ndf: N::by_ndf::<M, F>, vndf: N::by_vndf::<M, F> },
     };
 
-    /// The NDF's error model is for correlated Smith; its fine map has nodes to spare for the rest.
+    /// The NDF's error model is for correlated Smith and Schlick; its fine map has nodes to spare for other masking.
     fn counts(mu: f64, s: &Setting, tolerance: f64) -> [SlopeCounts; 2] {
         let [near, far] = N::counts(mu, s, tolerance);
-        [if is_fine(tolerance) { near } else { M::near(near) }, far]
+        let near = if is_fine(tolerance) { near } else { M::near(near) };
+        [F::near(near, s, tolerance), far]
     }
 
     fn lobe(p: &Pair, a: &Azimuth, setting: &Setting) -> [f64; 2] {
@@ -259,12 +260,16 @@ mod tests {
             let Integral::Slopes(slopes) = model.integral else { continue };
             for tolerance in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6] {
                 let mut rules = BTreeSet::new();
-                for (i, j) in (0..240).flat_map(|i| (0..400).map(move |j| (i, j))) {
-                    let (mu, alpha) = (2f64.powf(-0.1 * f64::from(i)), 2f64.powf(-0.1 * f64::from(j)));
-                    rules.extend((slopes.counts)(mu, &alpha.into(), tolerance).map(|counts| counts.nodes));
+                for parameters in extremes(model) {
+                    rules.clear();
+                    for (i, j) in (0..120).flat_map(|i| (0..200).map(move |j| (i, j))) {
+                        let (mu, alpha) = (2f64.powf(-0.2 * f64::from(i)), 2f64.powf(-0.2 * f64::from(j)));
+                        let setting = Setting { alpha, parameters };
+                        rules.extend((slopes.counts)(mu, &setting, tolerance).map(|counts| counts.nodes));
+                    }
+                    let nodes: usize = rules.iter().sum();
+                    assert!(nodes <= 2048, "{} at {tolerance}: {nodes} nodes", model.name);
                 }
-                let nodes: usize = rules.iter().sum();
-                assert!(nodes <= 2048, "{} at {tolerance}: {nodes} nodes", model.name);
             }
         }
     }

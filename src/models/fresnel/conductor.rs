@@ -22,8 +22,8 @@
 //!
 //! Promises: all of a microfacet model's. F ≤ 1, so that it conserves energy.
 
-use super::{Fresnel, metals::METALS};
-use crate::models::{Component, Metal, Parameter, Term, part};
+use super::{Fresnel, exact, metals::METALS};
+use crate::models::{Component, Metal, Parameter, SlopeCounts, Term, part};
 use crate::reference;
 use crate::setting::{Parameters, Setting};
 
@@ -73,6 +73,11 @@ impl Fresnel for Conductor {
         thinner.then_some(
             "eta² + k² < 1 reflects totally from an angle on, which no tolerance is kept at; give a larger k",
         )
+    }
+
+    fn near(schlick: SlopeCounts, s: &Setting, tolerance: f64) -> SlopeCounts {
+        let [re, im] = e(s.parameters[ETA], s.parameters[K]);
+        exact(schlick, [re.hypot(im), (re + 2.0).hypot(im)], tolerance)
     }
 
     fn fresnel(c: f64, x: f64, s: &Setting) -> [f64; 2] {

@@ -19,8 +19,8 @@
 //!
 //! Promises: all of a microfacet model's. F ≤ 1, so that it conserves energy.
 
-use super::Fresnel;
-use crate::models::{Component, Parameter, Term, part};
+use super::{Fresnel, exact};
+use crate::models::{Component, Parameter, SlopeCounts, Term, part};
 use crate::reference;
 use crate::setting::{Parameters, Setting};
 
@@ -49,6 +49,11 @@ impl Fresnel for Dielectric {
     /// η² − 1 in place of η, of which f32 would lose η − 1.
     fn derive(parameters: &mut Parameters) {
         parameters[ETA] = e(parameters[ETA]);
+    }
+
+    fn near(schlick: SlopeCounts, s: &Setting, tolerance: f64) -> SlopeCounts {
+        let e = e(s.parameters[ETA]);
+        exact(schlick, [e, e + 2.0], tolerance)
     }
 
     fn fresnel(c: f64, x: f64, s: &Setting) -> [f64; 2] {

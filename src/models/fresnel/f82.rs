@@ -25,8 +25,8 @@
 //!
 //! Promises: all of a microfacet model's. A + B ≤ 1, so that it conserves energy.
 
-use super::Fresnel;
-use crate::models::{Component, Parameter, Term, part};
+use super::{Fresnel, more};
+use crate::models::{Component, Parameter, SlopeCounts, Term, part};
 use crate::reference;
 use crate::setting::{Parameters, Setting};
 
@@ -57,6 +57,11 @@ impl Fresnel for F82 {
     /// w in place of f82, and q.
     fn derive(parameters: &mut Parameters) {
         [parameters[TINT], parameters[Q]] = dip(parameters[TINT]);
+    }
+
+    /// The dip is of degree 7, where Schlick's is 5. Measured: without, 0.55 is off by 1.7 times 1e-6.
+    fn near(schlick: SlopeCounts, s: &Setting, _tolerance: f64) -> SlopeCounts {
+        if s.parameters[TINT] < 1.0 { more(schlick, 1.25) } else { schlick }
     }
 
     fn fresnel(c: f64, x: f64, s: &Setting) -> [f64; 2] {
