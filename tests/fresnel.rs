@@ -94,7 +94,7 @@ fn normal_incidence_is_the_textbooks() {
 #[test]
 fn brewsters_angle_reflects_one_polarisation() {
     for evaluator in evaluators() {
-        for eta in [1.0001, 1.05, 1.5, 3.0, 1e3] {
+        for eta in [1.0001_f64, 1.05, 1.5, 3.0, 1e3] {
             let mu = 1.0 / (1.0 + eta * eta).sqrt();
             let exact = 0.5 * ((eta - 1.0) * (eta + 1.0) / (eta * eta + 1.0)).powi(2);
             for (term, set) in
@@ -336,7 +336,7 @@ mod command {
             let said = String::from_utf8_lossy(&run.stdout).into_owned();
             assert_eq!(run.status.code(), Some(0), "mirror, {fresnel}: {said}");
         }
-        let (list, page) = (gonio(&["models"]), gonio(&["models", "mirror-conductor"]));
+        let (list, page) = (gonio(&["models"]), gonio(&["models", "conductor"]));
         let [list, page] = [list, page].map(|output| String::from_utf8(output.stdout).unwrap());
         assert!(["dielectric", "conductor", "f82"].iter().all(|name| list.contains(name)), "{list}");
         assert!(page.contains("gold") && page.contains("Johnson & Christy 1972"), "{page}");

@@ -20,13 +20,8 @@ fn fresnel(c: real, x: real) -> real2 {
     return real2(0.5 * (dot(e, e) / (sum * sum)) * (1.0 + q), 0.0);
 }
 
-/// For integrals: without Fresnel …
+/// For integrals: F …
 fn fresnel_whole(c: real4) -> real4 {
-    return real4(1.0);
-}
-
-/// … and what of it is not A: 1 − F, which is lost. Absolute error counts here.
-fn fresnel_complement(c: real4) -> real4 {
     let e = real2(parameter(4u), parameter(5u));
     let re = e.x + c * c;
     let g2 = sqrt(re * re + e.y * e.y);
@@ -37,7 +32,12 @@ fn fresnel_complement(c: real4) -> real4 {
     let even = c * c * g2 + s2 * s2;
     let odd = 2.0 * c * s2 * re_g;
     let q = (even - odd) / (even + odd);
-    return 1.0 - 0.5 * (dot(e, e) / (sum * sum)) * (1.0 + q);
+    return 0.5 * (dot(e, e) / (sum * sum)) * (1.0 + q);
+}
+
+/// … and what of it is not A: nothing.
+fn fresnel_complement(c: real4) -> real4 {
+    return real4();
 }
 
 /// Far below any |g + c|² but that of η = 1, k = 0 at c = 0, where 0/0 is 0; its square is a normal number.

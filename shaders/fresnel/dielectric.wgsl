@@ -16,13 +16,8 @@ fn fresnel(c: real, x: real) -> real2 {
     return real2(0.5 * (r * r) * (1.0 + q * q), 0.0);
 }
 
-/// For integrals: without Fresnel …
+/// For integrals: F …
 fn fresnel_whole(c: real4) -> real4 {
-    return real4(1.0);
-}
-
-/// … and what of it is not A: 1 − F, which is lost. Absolute error counts here.
-fn fresnel_complement(c: real4) -> real4 {
     let e = parameter(4u);
     let g = sqrt(e + c * c);
     let sum = max(g + c, real4(NO_SURFACE));
@@ -30,7 +25,12 @@ fn fresnel_complement(c: real4) -> real4 {
     let cg = c * g;
     let s2 = (1.0 - c) * (1.0 + c);
     let q = (cg - s2) / (cg + s2);
-    return 1.0 - 0.5 * (r * r) * (1.0 + q * q);
+    return 0.5 * (r * r) * (1.0 + q * q);
+}
+
+/// … and what of it is not A: nothing.
+fn fresnel_complement(c: real4) -> real4 {
+    return real4();
 }
 
 /// Far below any g + c but that of η = 1 at c = 0, where 0/0 is 0; its square is a normal number.

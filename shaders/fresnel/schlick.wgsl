@@ -7,7 +7,7 @@ fn fresnel(c: real, x: real) -> real2 {
     return real2(c * (1.0 + x + x2 * (1.0 + x + x2)), x2 * x2 * x);
 }
 
-/// For integrals: without Fresnel …
+/// For integrals: A + B …
 fn fresnel_whole(c: real4) -> real4 {
     return real4(1.0);
 }

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub struct Args {
-    /// One model in detail: its parameters, parts, source and promises
+    /// One model in detail: its parameters, parts, source and promises; or a Fresnel term, on the ideal mirror
     #[arg(value_name = "NAME")]
     name: Option<String>,
     /// Print JSON on stdout
@@ -21,6 +21,7 @@ Examples:
   gonio models
   gonio models ggx
   gonio models ggx-smith-separable-none
+  gonio models conductor
 
 Exit codes: 0 success, 2 no such model";
 
@@ -36,12 +37,20 @@ struct Parameter {
 
 pub fn run(args: &Args) -> Result<()> {
     match &args.name {
-        Some(name) => one(models::find(name)?, args.json),
+        Some(name) => one(model_or_term(name)?, args.json),
         None if args.json => print_json(&json!({
             "models": models::all().map(|m| json!({ "name": m.name, "summary": m.summary })).collect::<Vec<_>>(),
             "masking": terms(&MASKINGS), "fresnel": terms(&FRESNELS),
         })),
         None => list(),
+    }
+}
+
+/// The model of this name, or the mirror with a Fresnel term of this name: it has the term's parameters and no more.
+fn model_or_term(name: &str) -> Result<&'static Model> {
+    match FRESNELS.iter().any(|term| term.name == name) {
+        true => models::find("mirror")?.with_terms(None, Some(name)),
+        false => models::find(name),
     }
 }
 

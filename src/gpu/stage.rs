@@ -107,11 +107,11 @@ impl Stages {
             }),
             WorkKind::Integrals { inner, outer } => {
                 let stage = Stage::inner(&upload, inner, &work.alphas)?;
-                let inner = Stage { model: Some(lobe.model), per_unit: inner.count(), ..stage };
+                let job = Job { parameters: Job::new(lobe, 1.0).parameters, ..stage.job };
+                let inner = Stage { model: Some(lobe.model), per_unit: inner.count(), job, ..stage };
                 // A texel that is one inner integral needs no sum.
                 if let (&[weight], false) = (&outer[..], accumulate) {
-                    let Job { weights, parameters, .. } = Job::new(lobe, weight);
-                    let job = Job { weights, parameters, ..inner.job };
+                    let job = Job { weights: Job::new(lobe, weight).weights, ..inner.job };
                     return Ok(Self { inner: Stage { channels, job, ..inner }, sum: None });
                 }
                 let sum = Stage {
