@@ -8,20 +8,22 @@
 fn fresnel(c: real, x: real) -> real2 {
     let w = parameter(4u); // in place of f82
     let q = parameter(5u);
-    // At grazing, where A is a small difference, 1 − c is exact.
-    let y = select(x, 1.0 - c, c < 0.5);
+    // The smaller of c and x has the more digits, and 1 − it is the other.
+    let small = min(c, x);
+    let large = 1.0 - small;
+    let y = select(small, large, c < x);
     let y2 = y * y;
     let a = c * (1.0 + y + y2 * (1.0 + y + y2) - w * (y2 * y2 * y2));
-    let x2 = x * x;
-    let difference = c - x;
-    return real2(a, x2 * x2 * x * (difference * difference + (4.0 - q) * c * x));
+    let difference = large - small;
+    return real2(a, y2 * y2 * y * (difference * difference + (4.0 - q) * small * large));
 }
 
-/// For integrals: A + B = 1 − (1 − f82) M …
+/// For integrals: A + B, which is never below B, however it is rounded …
 fn fresnel_whole(c: real4) -> real4 {
     let x = 1.0 - c;
     let x2 = x * x;
-    return 1.0 - (parameter(4u) + parameter(5u)) * c * (x2 * x2 * x2);
+    let a = c * (1.0 + x + x2 * (1.0 + x + x2) - parameter(4u) * (x2 * x2 * x2));
+    return a + fresnel_complement(c);
 }
 
 /// … and what of it is not A, which is B. Absolute error counts here.

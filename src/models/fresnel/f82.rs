@@ -66,12 +66,13 @@ impl Fresnel for F82 {
 
     fn fresnel(c: f64, x: f64, s: &Setting) -> [f64; 2] {
         let [w, q] = dip(s.parameters[TINT]);
-        let y = if c < 0.5 { 1.0 - c } else { x };
+        let small = c.min(x);
+        let large = 1.0 - small;
+        let y = if c < x { large } else { small };
         let y2 = y * y;
         let a = c * (1.0 + y + y2 * (1.0 + y + y2) - w * (y2 * y2 * y2));
-        let x2 = x * x;
-        let difference = c - x;
-        [a, x2 * x2 * x * (difference * difference + (4.0 - q) * c * x)]
+        let difference = large - small;
+        [a, y2 * y2 * y * (difference * difference + (4.0 - q) * small * large)]
     }
 }
 
