@@ -240,7 +240,7 @@ impl TablePlan {
                 lobe.set(name, *value)?;
             }
         }
-        Ok(self)
+        self.checked()
     }
 
     /// The same with all of them, each in its place.
@@ -284,6 +284,9 @@ impl TablePlan {
         }
         for lobe in &self.lobes {
             let model = lobe.model;
+            if let Some(why) = model.refused(&lobe.parameters) {
+                return refuse(format!("{}: {why}", model.name));
+            }
             if model.shape.is_some() && !swept && lobe.roughness.is_none() {
                 return refuse(format!("{} needs a roughness: give a value or an axis", model.name));
             }

@@ -7,7 +7,12 @@ fn fresnel(c: real, x: real) -> real2 {
     return real2(c * (1.0 + x + x2 * (1.0 + x + x2)), x2 * x2 * x);
 }
 
-/// 1 − A = Fc for integrals, where absolute error counts.
+/// For integrals: A + B …
+fn fresnel_whole(c: real4) -> real4 {
+    return real4(1.0);
+}
+
+/// … and what of it is not A, which is B. Absolute error counts here.
 fn fresnel_complement(c: real4) -> real4 {
     let x = 1.0 - c;
     let x2 = x * x;

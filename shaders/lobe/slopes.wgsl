@@ -17,8 +17,8 @@ struct Map {
     divisor: real4,
 }
 
-/// The integrand at r, times w dv/dr and a node's weight: without Fresnel, and the part of it that A lacks, which
-/// is B where there is one. Both over 2 NDF_MAP_WEIGHT.
+/// The integrand at r, times w dv/dr and a node's weight: of A + B, and what of that is not A. Both over
+/// 2 NDF_MAP_WEIGHT.
 struct Slope {
     all: real4,
     grazing: real4,
@@ -34,5 +34,5 @@ fn slope_term(r: real4, weight: real, azimuth: SlopeAzimuth, e: Masked, tan_scal
     let inverse = 1.0 / (root * below);
     let all = x * projected * (map.weight * weight) * (root * inverse);
     let c = clamp(projected * (below * inverse), real4(), real4(1.0));
-    return Slope(all, all * fresnel_complement(c));
+    return Slope(all * fresnel_whole(c), all * fresnel_complement(c));
 }

@@ -12,7 +12,7 @@
 //     μi = μz/y,  cos θm = m/√y,  ωe·ωm = μq/√y,  G2 = 2μ z / masking(z, y),  G1 = 2μ / (μ + root).
 // ωi below the horizon, z < 0, counts as 0.
 
-/// An estimate: without Fresnel, and the part of it that A lacks, which is B where there is one.
+/// An estimate: of A + B, and what of that is not A.
 struct Estimate {
     all: real4,
     grazing: real4,
@@ -50,5 +50,5 @@ fn facet_estimate(facet: Facet, e: Masked, tan: real) -> Estimate {
     let z = max(2.0 * q * facet.m - y, real4());
     let all = z * facet_weight(q, facet.m, e) / masking(z, y, e);
     let c = clamp(e.mu * q * inverseSqrt(y), real4(), real4(1.0));
-    return Estimate(all, all * fresnel_complement(c));
+    return Estimate(all * fresnel_whole(c), all * fresnel_complement(c));
 }

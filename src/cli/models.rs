@@ -2,13 +2,13 @@
 
 use super::{HEADING, print, print_json};
 use crate::error::Result;
-use crate::models::{self, Component, FRESNELS, Integral, MASKINGS, MODELS, Model, Shape, Term};
+use crate::models::{self, Component, FRESNELS, Integral, MASKINGS, MODELS, Metal, Model, Shape, Term};
 use serde_json::{Value, json};
 
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub struct Args {
-    /// One model in detail: its parameters, parts, source and promises
+    /// One model in detail: its parameters, parts, source and promises; or a Fresnel term, on the ideal mirror
     #[arg(value_name = "NAME")]
     name: Option<String>,
     /// Print JSON on stdout
@@ -21,6 +21,7 @@ Examples:
   gonio models
   gonio models ggx
   gonio models ggx-smith-separable-none
+  gonio models conductor
 
 Exit codes: 0 success, 2 no such model";
 
@@ -36,12 +37,20 @@ pub(super) struct Parameter {
 
 pub fn run(args: &Args) -> Result<()> {
     match &args.name {
-        Some(name) => one(models::find(name)?, args.json),
+        Some(name) => one(model_or_term(name)?, args.json),
         None if args.json => print_json(&json!({
             "models": models::all().map(|m| json!({ "name": m.name, "summary": m.summary })).collect::<Vec<_>>(),
             "masking": terms(&MASKINGS), "fresnel": terms(&FRESNELS),
         })),
         None => list(),
+    }
+}
+
+/// The model of this name, or the mirror with a Fresnel term of this name: it has the term's parameters and no more.
+fn model_or_term(name: &str) -> Result<&'static Model> {
+    match FRESNELS.iter().any(|term| term.name == name) {
+        true => models::find("mirror")?.with_terms(None, Some(name)),
+        false => models::find(name),
     }
 }
 
@@ -60,11 +69,12 @@ fn one(model: &Model, as_json: bool) -> Result<()> {
     let (parameters, promises) = (parameters(model), promises(model));
     if as_json {
         let parameter = |p: &Parameter| json!({ "name": p.name, "range": p.range, "unit": p.unit, "default": p.default, "what": p.what });
+        let metal = |m: &Metal| json!({ "name": m.name, "eta": m.eta, "k": m.k, "source": m.source });
         return print_json(&json!({
             "name": model.name, "summary": model.summary, "source": model.source,
             "parameters": parameters.iter().map(parameter).collect::<Vec<_>>(),
             "parts": model.parts.iter().map(|part| part.name).collect::<Vec<_>>(),
-            "promises": promises,
+            "metals": model.metals().iter().map(metal).collect::<Vec<_>>(), "promises": promises,
         }));
     }
     print(&format!("{HEADING}{}{HEADING:#}  {}", model.name, model.summary))?;
@@ -78,6 +88,12 @@ fn one(model: &Model, as_json: bool) -> Result<()> {
     print(&format!("{HEADING}parts{HEADING:#}"))?;
     for part in model.parts {
         print(&format!("  shaders/{}.wgsl", part.name))?;
+    }
+    if !model.metals().is_empty() {
+        print(&format!("{HEADING}metals{HEADING:#}"))?;
+    }
+    for Metal { name, eta, k, source } in model.metals() {
+        print(&format!("  {name:10}eta = {eta:?}, k = {k:?}; {source}"))?;
     }
     print(&format!("{HEADING}promises{HEADING:#}"))?;
     promises.iter().try_for_each(|promise| print(&format!("  {promise}")))
@@ -114,6 +130,15 @@ pub(super) fn parameters(model: &Model) -> Vec<Parameter> {
         default: p.default.map(|x| x.to_string()),
         what: p.summary.into(),
     }));
+    if !model.metals().is_empty() {
+        all.push(Parameter {
+            name: "metal",
+            range: model.metals().iter().map(|metal| metal.name).collect::<Vec<_>>().join(" | "),
+            unit: "",
+            default: Some("none".into()),
+            what: "in place of eta and k, for R, G and B at 611.4, 549.1 and 464.2 nm".into(),
+        });
+    }
     all.extend(model.terms().into_iter().map(|(name, terms, term)| Parameter {
         name,
         range: terms.iter().map(|term| term.name).collect::<Vec<_>>().join(" | "),

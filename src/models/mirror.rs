@@ -44,7 +44,8 @@ impl<F: Fresnel> Made<F> {
         reference: Some(&Self::REFERENCE),
     };
 
-    const TERMS: Microfacet = Microfacet { ndf: TERM, masking: None, fresnel: F::TERM };
+    const TERMS: Microfacet =
+        Microfacet { ndf: TERM, masking: None, fresnel: F::TERM, metals: F::METALS, refused: F::refused };
     const PARTS: [Part; 2] = [F::TERM.part, TERM.part];
     const REFERENCE: reference::Mirror = reference::Mirror { fresnel: F::REFERENCE };
 }

@@ -11,6 +11,7 @@ mod microfacet;
 mod mirror;
 mod ndf;
 
+pub use fresnel::metals::{METALS, Metal};
 pub use microfacet::{FRESNELS, MASKINGS, MICROFACETS, MIRRORS, Microfacet};
 
 use crate::error::{Error, Result};
@@ -274,7 +275,6 @@ impl Component {
     const DIFFUSE: [Self; 1] = [Self { name: "A", weight: "albedo", default: None }];
 
     /// What of an exact Fresnel term is shown: all of it, unless an artist dims it.
-    #[expect(dead_code, reason = "the exact terms take it")]
     const SPECULAR: [Self; 1] = [Self { name: "A", weight: "specular", default: Some(1.0) }];
 
     /// What Schlick's Fresnel splits a lobe into.
@@ -366,6 +366,16 @@ impl Model {
     /// What shaders get of a shape, in the model's own measure.
     pub(crate) fn on_device(&self, alpha: f64) -> f64 {
         self.shape.map_or(alpha, |shape| shape.on_device(alpha))
+    }
+
+    /// Names that stand for its index, η and k of each channel, if it has one.
+    pub fn metals(&self) -> &'static [Metal] {
+        self.microfacet.map_or(&[], |made| made.metals)
+    }
+
+    /// Why these parameters are refused, if they are, though each is in its range.
+    pub(crate) fn refused(&self, parameters: &Parameters) -> Option<&'static str> {
+        (self.microfacet?.refused)(parameters)
     }
 
     /// Whether a lobe of this roughness is a delta, as far as values go.

@@ -186,6 +186,9 @@ impl Subject for Sum<'_> {
         };
         let mut f = vec![0.0; CHANNELS];
         for lobe in lobes {
+            if lobe.model.refused(&lobe.parameters).is_some() {
+                return None; // nothing is promised of it
+            }
             let [a, b] = lobe.model.reference?.brdf(&at, &lobe.setting_at(None))?;
             for (f, [weight_a, weight_b]) in f.iter_mut().zip(&lobe.weights) {
                 *f += weight_a * a + weight_b * b;
@@ -209,6 +212,9 @@ impl Subject for Sum<'_> {
             // A table for each setting of what it has no axis for.
             let mut tables: Vec<(Parameters, Table)> = Vec::new();
             for (lobe, rho) in lobes.iter().zip(rho.chunks_exact_mut(thetas.len() * CHANNELS)) {
+                if lobe.model.refused(&lobe.parameters).is_some() {
+                    continue; // nothing is promised of it
+                }
                 let made = tables.iter().position(|(parameters, _)| *parameters == lobe.parameters);
                 let made = match made {
                     Some(made) => made,
@@ -270,16 +276,19 @@ impl Subject for Sum<'_> {
         if self.points.is_none() {
             return vec!["a delta has no values: it is checked through its integrals alone".into()];
         }
+        let low: Vec<_> = self.whole.iter().map(|parameter| parameter.low).collect();
+        let lobes = (self.lobes)(&low).unwrap_or_default();
+        let refused = lobes.iter().find_map(|lobe| lobe.model.refused(&lobe.parameters));
+        let refused = refused.map(|why| format!("not judged where it is refused: {why}"));
         let clipped = self.parameters.iter().zip(&self.whole).filter(|(values, whole)| values != whole);
-        clipped
-            .map(|(values, whole)| {
-                let Parameter { name, low, .. } = values;
-                format!(
-                    "{name} from {} to {low} is a delta, without values: checked through its integrals alone",
-                    whole.low
-                )
-            })
-            .collect()
+        let clipped = clipped.map(|(values, whole)| {
+            let Parameter { name, low, .. } = values;
+            format!(
+                "{name} from {} to {low} is a delta, without values: checked through its integrals alone",
+                whole.low
+            )
+        });
+        clipped.chain(refused).collect()
     }
 }
 

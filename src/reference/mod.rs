@@ -27,7 +27,9 @@ pub use diffuse::{
     oren_nayar::OREN_NAYAR,
 };
 pub use directions::{Angles, MIN_MU};
-pub(crate) use fresnel::{Fresnel, none::Constant, schlick::Schlick};
+pub(crate) use fresnel::{
+    Fresnel, conductor::Conductor, dielectric::Dielectric, f82::F82, none::Constant, schlick::Schlick,
+};
 pub(crate) use masking::{
     Masking,
     none::Unmasked,

@@ -71,6 +71,7 @@ fn lobe(item: Item) -> Result<MaterialLobe> {
     keys.extend(model.terms().into_iter().map(|(kind, ..)| kind));
     keys.extend(model.shape.iter().flat_map(|shape| ["roughness", shape.name]));
     keys.extend(model.parameters().map(|parameter| parameter.name));
+    keys.extend((!model.metals().is_empty()).then_some("metal"));
     keys.extend(model.components.iter().map(|component| component.weight));
     let fields = item.table(&keys)?;
 
@@ -82,14 +83,19 @@ fn lobe(item: Item) -> Result<MaterialLobe> {
             roughness => roughness,
         },
     };
+    let metals = || model.metals().iter().map(|metal| (metal.name, metal));
+    let metal = fields.get("metal").map(|item| item.one_of(metals())).transpose()?;
+    let of_metal = |name: &str| metal.and_then(|metal| metal.get(name));
     let mut parameters = Vec::new();
     for parameter in model.parameters() {
-        match fields.get(parameter.name) {
-            Some(item) => parameters.push((parameter.name.into(), channels(item, parameter.range)?)),
-            None if parameter.default.is_none() => {
+        match (fields.get(parameter.name), of_metal(parameter.name)) {
+            (Some(item), Some(_)) => return Err(item.refuse("the metal has its own; keep one of them")),
+            (None, Some(given)) => parameters.push((parameter.name.into(), given)),
+            (Some(item), None) => parameters.push((parameter.name.into(), channels(item, parameter.range)?)),
+            (None, None) if parameter.default.is_none() => {
                 return Err(fields.refuse(&format!("give its {}", parameter.name)));
             }
-            None => {}
+            (None, None) => {}
         }
     }
     let mut weights = [[0.0; 3]; 2];

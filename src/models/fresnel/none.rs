@@ -16,6 +16,7 @@ impl Fresnel for Constant {
     };
     const REFERENCE: &'static dyn reference::Fresnel = &reference::Constant;
     // The name that this reflectance has in every other Fresnel term.
+    const POLYNOMIAL: bool = true;
     const COMPONENTS: &'static [Component] = &[Component { name: "A", weight: "f0", default: Some(1.0) }];
 
     fn fresnel(_c: f64, _x: f64, _s: &Setting) -> [f64; 2] {

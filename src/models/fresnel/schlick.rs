@@ -17,6 +17,7 @@ impl Fresnel for Schlick {
         part: PART,
     };
     const REFERENCE: &'static dyn reference::Fresnel = &reference::Schlick;
+    const POLYNOMIAL: bool = true;
     const COMPONENTS: &'static [Component] = &Component::schlick(0.04);
 
     fn fresnel(c: f64, x: f64, _s: &Setting) -> [f64; 2] {
