@@ -55,7 +55,7 @@ fn f(evaluator: &Evaluator, term: &str, set: &[(&str, f64)], mus: &[f64]) -> Vec
     bake(evaluator, &with(plan, set), Check::All).values.iter().collect()
 }
 
-/// f32 of a value of F: some thirty roundings, of which most are chance.
+/// F alone is off by less than a value, whose budget this is.
 const BUDGET: f64 = VALUE_F32;
 
 fn close(value: f64, exact: f64) -> bool {
@@ -175,7 +175,12 @@ fn means_meet_their_closed_forms() {
 
 // ---- Under GGX -------------------------------------------------------------------------------------
 
-/// Values at the extremes: of the angles, of α and of the index.
+/// Values at the extremes: of the angles, of α and of the index. The budget is that of Schlick's B.
+///
+/// Were all roundings of u = 2⁻²⁴ to meet, F of a dielectric as η → 1 were off by 29 u: 3.5 of c count four times, as
+/// R ~ (e/4c²)², and e, g, g + c, its square and the quotient take 15. Schlick's x⁵ takes 24, of 40 for all of B. But
+/// their signs are chance, and the variances add to 71 u²/3 here and to 100 u²/3 there: what holds for B by its
+/// worst case holds here by 5 σ. Towards larger η and k F changes less with c. Measured over 2·10⁷ inputs: 24 u.
 #[test]
 fn values_agree_with_the_reference() {
     let mut thetas = extreme_thetas();
