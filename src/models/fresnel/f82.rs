@@ -44,7 +44,6 @@ impl Fresnel for F82 {
         part: part!("fresnel/f82"),
     };
     const REFERENCE: &'static dyn reference::Fresnel = &reference::F82;
-    const POLYNOMIAL: bool = true;
     const COMPONENTS: &'static [Component] = &Component::schlick(0.8);
     const PARAMETERS: &'static [Parameter] = &[Parameter {
         name: "f82",

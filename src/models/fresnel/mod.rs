@@ -16,7 +16,8 @@ pub(crate) trait Fresnel {
     const TERM: Term;
     const REFERENCE: &'static dyn reference::Fresnel;
     const COMPONENTS: &'static [Component];
-    /// Whether it is a polynomial of c: it then leaves ρ analytic where the NDF does, and tables may be spread.
+    /// Whether it is a polynomial of c with coefficients of no more than some ones: it then leaves ρ as analytic as the
+    /// NDF does, and tables may be spread from few integrals.
     const POLYNOMIAL: bool = false;
     const PARAMETERS: &'static [Parameter] = &[];
 

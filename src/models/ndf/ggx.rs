@@ -24,7 +24,7 @@ impl Ndf for Ggx {
     const SAMPLES: Option<Part> = Some(ggx_samples::PART);
     /// Smith's root α² + (1 − α²) μ² vanishes at μ = ±iα/√(1 − α²), and the map ends at its own branch point,
     /// α = ±i t_max, at μ = ±2iα/(1 − α²). Measured by `print_the_error_of_spreading`: 1 is too little by a third.
-    const BRANCHES: Option<Branches> = Some(Branches { strength: 2.0 });
+    const BRANCHES: Option<Branches> = Some(Branches { strength: 1.5 });
 
     fn ndf(h: &Half, hz2: f64, &Setting { alpha, .. }: &Setting) -> f64 {
         let q = alpha * h.h2 / (alpha * alpha * hz2 + h.ht2);
