@@ -89,7 +89,7 @@ fn the_bounds_are_the_largest_albedos() {
         let at = |k: u32, j: u32| {
             let setting =
                 Setting { alpha: model.measure(f64::from(k) / 200.0), parameters: model.defaults() };
-            rho(model, &setting, FRAC_PI_2 * f64::from(j) / 90.0, [24, 24])
+            rho(model, &setting, FRAC_PI_2 * f64::from(j) / 90.0, [16, 10])
         };
         let (mut most, mut place) = (0.0, (0, 0));
         for (k, j) in (0..=200).flat_map(|k| (0..=90).map(move |j| (k, j))) {
