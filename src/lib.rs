@@ -28,6 +28,7 @@
 //! | `portrait` | what a picture of a BRDF shows: lobes, lit spheres, ρ_dh | how it is drawn |
 //! | [`points`] | values at any list of pairs of directions, unlooked at | tables, files |
 //! | [`table`], [`axis`], [`quantity`], [`storage`], [`setting`] | what a table is | where it came from |
+//! | `work`, `slopes`, `sampling`, `spread` | the rules: nodes, weights, matrices, in f64 | devices |
 //! | `interpolation`, `optimise` | what a bilinear reader gets, and the cheapest table for it | devices |
 //! | `files` | EXR, NPY, PNG, the manifest; sets written all or nothing | physics |
 //!

@@ -47,7 +47,7 @@ const PER_DECADE: i32 = 8;
 pub const DEFAULT_BUDGET: u64 = 4_000_000;
 
 /// The largest relative error that a value of a model may have at an α: its own budget, where that is more than
-/// most models'. Else, were all roundings to meet at their largest, 2.4e-6 ([`VALUE_F32`](crate::plan::VALUE_F32)); that they do
+/// most models'. Else, were all roundings to meet at their largest, 2.4e-6 ([`VALUE_F32`]); that they do
 /// not, as their signs are chance, makes 2e-6. Where α < 1e-4 there is room for devices whose divisions are off
 /// by 2.5 ULP in place of a half, as WGSL allows.
 pub fn promise(model: &Model, alpha: f64) -> f64 {

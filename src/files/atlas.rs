@@ -115,7 +115,8 @@ fn by_theta(canvas: &mut Canvas, frame: Frame, map: &Map, promise: Option<f64>) 
 
 /// Lines of relative errors, with their names at their right ends, and half a unit in the last place.
 fn plot(canvas: &mut Canvas, frame: Frame, x: &Scale, lines: &[Line], below: &str) {
-    let y = Scale { range: [5e-9, 2e-5], kind: Kind::Log };
+    let most = lines.iter().flat_map(|(.., points)| points).map(|&(_, error)| error).fold(1e-5, f64::max);
+    let y = Scale { range: [5e-9, 2.0 * most], kind: Kind::Log };
     let at = |(u, v): (f64, f64)| {
         let up = y.at(v).clamp(0.0, 1.0) as f32;
         (frame.x + frame.w * x.at(u) as f32, frame.y + frame.h * (1.0 - up))

@@ -22,7 +22,9 @@ pub fn model<'a>(args: &Args, name: &str, evaluator: &'a Evaluator) -> Result<Ta
     let mut model = models::find(name)?;
     let (mut fixed, mut ranges) = (Vec::new(), Vec::new());
     for set in &args.set {
-        let (key, value) = subject::key_value(set)?;
+        let (key, value) = subject::key_value(set).map_err(|error| {
+            Error::input(format!("{error}; or KEY=LOW..HIGH for a range, as in --set alpha=1e-6..1"))
+        })?;
         if fixed.iter().any(|(given, _)| *given == key) || ranges.iter().any(|r: &Parameter| r.name == key) {
             return Err(Error::input(format!("--set {set}: \"{key}\" is given twice")));
         }

@@ -44,6 +44,7 @@ const fn metal(name: &'static str, eta: [f64; 3], k: [f64; 3], source: &'static 
 
 impl Metal {
     /// A parameter of its index, by the name in recipes.
+    #[cfg(feature = "scene")]
     pub(crate) fn get(&self, name: &str) -> Option<[f64; 3]> {
         match name {
             "eta" => Some(self.eta),
