@@ -199,6 +199,10 @@ fn integrals(table: &TablePlan, lobe: &Lobe, alphas: Vec<f64>, thetas: &[f64], w
     Work { alphas, kind }
 }
 
+/// Fewer integrals than these are done one by one: they take some milliseconds at most, and to spread others over them
+/// would take two more pipelines, which a first bake has to compile, for tens of them.
+const FEWEST: usize = 8192;
+
 /// Integrals in slopes: at each texel, or at the sources of the table where that takes fewer.
 fn slopes_work(
     table: &TablePlan,
@@ -216,7 +220,8 @@ fn slopes_work(
         Work { alphas, kind: WorkKind::Integrals { inner, outer } }
     };
     let direct = |alphas, mus| work(alphas, mus, vec![Matrix::row(weights.to_vec())]);
-    let Some(branches) = slopes.branches else { return direct(alphas, mus) };
+    let enough = alphas.len().saturating_mul(mus.len()) >= FEWEST;
+    let Some(branches) = slopes.branches.filter(|_| enough) else { return direct(alphas, mus) };
     let rows = Spread::along_roughness(&alphas, &mus, branches, tolerance);
     if weights.len() > 1 {
         // The mean over directions has nodes of its own for columns.

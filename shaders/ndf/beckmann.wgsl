@@ -1,21 +1,23 @@
 // Beckmann: Beckmann & Spizzichino 1963, as Walter et al. 2007, eq. 25, have it.
 
-/// D(ωm), sr⁻¹: exp(−tan²θm/α²) / (π α² cos⁴θm), as the square of its root: the exponential may leave f32's
-/// range where the whole does not.
+/// D(ωm), in units of NDF_UNIT sr⁻¹: exp(−tan²θm/α²) / (π α² cos⁴θm), as the square of its root: D may leave f32's
+/// range where f, which divides it by μi μe, does not.
 fn ndf(h: Half, hz2: real, alpha: real) -> real {
     let x = h.ht2 / (alpha * alpha * hz2);
-    let q = exp_neg(real4(0.5 * x)).x * (INV_SQRT_PI / alpha * (h.h2 / hz2));
+    let q = exp_neg(real4(0.5 * x)).x * (SCALE / alpha * (h.h2 / hz2));
     return q * q;
 }
 const INV_SQRT_PI: real = 0.5641895835477563;
+const SCALE: real = 605793952.5203682; // 2³⁰/√π
+const NDF_UNIT: real = 8.673617379884035e-19; // 2⁻⁶⁰
 
 /// Smith's Λ of these normals (Walter et al. 2007, after eq. 25, exactly): with a = μ / (α s), s = sin θ,
 /// (1 + 2Λ) μ = μ erf a + α s e^(−a²)/√π, and erf a = 1 − e^(−a²) erfcx a.
 fn smith_roots(mu: real4, alpha: real4) -> real4 {
     let scale = alpha * sqrt((1.0 - mu) * (1.0 + mu));
     // What is beyond the largest exponent is 0, also where s = 0.
-    let a2 = min(mu / max(scale, 1e-3 * mu), real4(1e3));
-    let tail = exp_neg(a2 * a2);
+    let a = mu / max(scale, 1e-3 * mu);
+    let tail = exp_neg(a * a);
     return mu + tail * (INV_SQRT_PI * scale - mu * erfcx(mu, scale));
 }
 

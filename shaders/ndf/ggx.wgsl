@@ -1,11 +1,12 @@
 // GGX: Trowbridge & Reitz 1975; Walter et al. 2007, eq. 33.
 
-/// D(ωm), sr⁻¹: (α h² / (α² hz² + ht²))² / π, also right at hz = 0.
+/// D(ωm), in units of NDF_UNIT sr⁻¹: (α h² / (α² hz² + ht²))² / π, also right at hz = 0.
 fn ndf(h: Half, hz2: real, alpha: real) -> real {
     let q = (INV_SQRT_PI * alpha) * h.h2 / (alpha * alpha * hz2 + h.ht2);
     return q * q;
 }
 const INV_SQRT_PI: real = 0.5641895835477563;
+const NDF_UNIT: real = 1.0;
 
 /// Smith's Λ of these normals (Heitz 2014, eq. 72), in the form that has no tangent:
 /// (1 + 2Λ) μ = √(α² + (1 − α²) μ²).

@@ -5,7 +5,7 @@ use super::compose::{COARSE_NODES, Kernel, VALUE_WINDOW};
 use crate::error::{Error, Result};
 use crate::models::{ALPHA_MIN_INTEGRAL, Model, SlopeCounts, is_fine};
 use crate::pair::{Azimuth, Pair};
-use crate::plan::{Lobe, Precision};
+use crate::plan::{INTEGRAL_F32, Lobe, Precision};
 use crate::sampling::Sampler;
 use crate::slopes::{Side, TILE_ALPHAS, TILE_COLUMNS};
 use crate::spread::Matrix;
@@ -128,7 +128,9 @@ impl Stages {
                 }
                 // The last of them makes channels.
                 let last = outer.len() - 1;
-                let below_zero = |k| if k == last { work.below_zero() as f32 } else { 0.0 };
+                // What f32 rounds may be more than a fine rule's tolerance.
+                let rounding = if precision == Precision::F32 { INTEGRAL_F32 } else { 0.0 };
+                let below_zero = |k| if k == last { work.below_zero().max(rounding) as f32 } else { 0.0 };
                 let kernel = |k| if k == last && accumulate { Kernel::AddSum } else { Kernel::Sum };
                 let stage = |(k, matrix)| {
                     Ok(Stage {
