@@ -203,15 +203,19 @@ pub(crate) fn sample(shape: &[usize], n: usize) -> Vec<usize> {
             shape.iter().enumerate().map(|axis| (at(axis), axis.1)).fold(0, |flat, (k, n)| flat * n + k),
         );
     }
-    // A stride without a common factor visits every texel before it repeats one.
-    let golden = (texels as f64 * 0.618_033_988_749_894_9) as usize;
-    let stride = (golden.max(1)..).find(|&s| gcd(s, texels) == 1).unwrap_or(1);
+    let stride = stride(texels);
     let mut texel = 0;
     while chosen.len() < n {
         texel = (texel + stride) % texels;
         chosen.insert(texel);
     }
     chosen.into_iter().collect()
+}
+
+/// A step of the golden section through 0 … n − 1: without a common factor, so that it visits all before it repeats one.
+pub(crate) fn stride(n: usize) -> usize {
+    let golden = (n as f64 * 0.618_033_988_749_894_9) as usize;
+    (golden.max(1)..).find(|&step| gcd(step, n) == 1).unwrap_or(1)
 }
 
 fn gcd(a: usize, b: usize) -> usize {

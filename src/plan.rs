@@ -66,7 +66,7 @@ impl Lobe {
     /// # Errors
     /// When there is none of this name, or the value is outside its range.
     pub fn set(&mut self, name: &str, value: f64) -> Result<()> {
-        let Some(parameter) = self.model.parameters().find(|parameter| parameter.name == name) else {
+        let Some(parameter) = self.model.parameters.iter().find(|parameter| parameter.name == name) else {
             return Err(Error::input(format!("{} has no parameter \"{name}\"", self.model.name)));
         };
         let [low, high] = parameter.range;

@@ -86,9 +86,8 @@ impl Portrait {
     ) -> Result<Self> {
         observer.begin(&sitter.label);
         let Sitter { label, scene, material } = sitter;
-        let found = scene.materials.iter().find(|m| m.name == *material);
-        let found = found.ok_or_else(|| Error::input(format!("no material \"{material}\"")))?;
-        let lobes = constant_lobes(found).map_err(|why| Error::input(format!("{material}: {why}")))?;
+        let lobes = constant_lobes(scene.material(material)?)
+            .map_err(|why| Error::input(format!("{material}: {why}")))?;
         let unbounded = lobes.iter().find_map(|lobe| match lobe.model.integral {
             Integral::Unbounded(why) => Some(why),
             _ => None,

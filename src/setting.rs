@@ -1,7 +1,7 @@
 //! What a lobe is evaluated with: plain numbers, which the shaders, their twins and the reference read alike.
 
-/// Parameters beyond the shape, in the places that parts give them: an NDF's from 0, a masking term's from
-/// 2, a Fresnel term's from 4; a model without terms takes them from 0.
+/// Parameters beyond the shape, in the places that parts give them: a Fresnel term's from 4 on, so that there is
+/// room for other terms', and those of a model without terms from 0.
 pub type Parameters = [f64; 8];
 
 /// A model's shape and the rest of its parameters.

@@ -4,9 +4,9 @@
 //!
 //! A polynomial is limited by the branch points of ρ off the real axis: at μ = ±iα and so, along roughness
 //! r = √α, at √(±iμ) (see [`Branches`]); and at 0, where ρ has logarithms of μ and of α. In x = asinh(value/δ),
-//! linear up to δ and logarithmic beyond, they keep away from the range by up to π/2 and π/4. With n Chebyshev points the error falls as e^(−n q), where
-//! cosh q is the half axis of the largest ellipse with foci at the range's ends that holds no branch point
-//! (Trefethen 2013, theorem 8.2): so many points as
+//! linear up to δ and logarithmic beyond, they keep away from the range by up to π/2 and π/4. With n Chebyshev
+//! points the error falls as e^(−n q), where cosh q is the half axis of the largest ellipse with foci at the
+//! range's ends that holds no branch point (Trefethen 2013, theorem 8.2): so many points as
 //!     strength · e^(−n q) ≤ tolerance/8
 //! asks for, with δ the best of a few. Values so near 0 that to reach them would take more points than there are of
 //! them are sources themselves.

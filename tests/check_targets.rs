@@ -62,7 +62,7 @@ fn every_model_keeps_its_promises_over_its_whole_range() {
             parameters.push(Parameter::new(shape.name, shape.least, shape.most).unwrap());
         }
         parameters
-            .extend(model.parameters().map(|p| Parameter::new(p.name, p.range[0], p.range[1]).unwrap()));
+            .extend(model.parameters.iter().map(|p| Parameter::new(p.name, p.range[0], p.range[1]).unwrap()));
         let weights = model.components.iter().map(|c| Parameter::new(c.weight, 0.0, 1.0).unwrap());
         parameters.extend(weights);
         let lobe = Lobe::new(model, Some(0.5), vec![[0.0; 2]; 3]);

@@ -123,7 +123,7 @@ pub(super) fn parameters(model: &Model) -> Vec<Parameter> {
             });
         }
     }
-    all.extend(model.parameters().map(|p| Parameter {
+    all.extend(model.parameters.iter().map(|p| Parameter {
         name: p.name,
         range: format!("[{}, {}]", p.range[0], p.range[1]),
         unit: if p.unit.is_empty() { DIMENSIONLESS } else { p.unit },

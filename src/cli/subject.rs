@@ -51,14 +51,7 @@ pub fn material<'a>(
         Ok((key.to_owned(), value?))
     };
     let setting = sets.into_iter().map(number).collect::<Result<Vec<_>>>()?;
-    let names: Vec<_> = scene.materials.iter().map(|material| material.name.clone()).collect();
-    let Some(material) = scene.materials.iter_mut().find(|material| material.name == name) else {
-        return Err(Error::input(format!(
-            "{}: no material \"{name}\"; there are {}",
-            scene.file.display(),
-            names.join(", ")
-        )));
-    };
-    *material = material.at(&setting)?;
+    let at = scene.material(name)?.at(&setting)?;
+    scene.materials.iter_mut().filter(|material| material.name == name).for_each(|m| m.clone_from(&at));
     Ok(scene)
 }

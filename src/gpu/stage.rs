@@ -2,6 +2,7 @@
 
 use super::baker::{Baker, count};
 use super::compose::{COARSE_NODES, Kernel, VALUE_WINDOW};
+use crate::check::stride;
 use crate::error::{Error, Result};
 use crate::models::{ALPHA_MIN_INTEGRAL, Model, SlopeCounts, is_fine};
 use crate::pair::{Azimuth, Pair};
@@ -273,14 +274,8 @@ fn fours(alphas: &[f64]) -> (Vec<f64>, usize) {
 /// 0 to n − 1 such that each run of them is spread over all: software drivers give each core a contiguous
 /// share of a dispatch, and the cost of a row depends on α.
 fn mixed(n: usize) -> impl Iterator<Item = usize> {
-    // Steps of the golden section, and the next that has no divisor in common with n.
-    let golden = (n as f64 * 0.618_034) as usize;
-    let stride = (golden.max(1)..).find(|&k| gcd(k, n) == 1).unwrap_or(1);
+    let stride = stride(n);
     (0..n).map(move |k| k * stride % n)
-}
-
-fn gcd(a: usize, b: usize) -> usize {
-    if b == 0 { a } else { gcd(b, a % b) }
 }
 
 impl Job {

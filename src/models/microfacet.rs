@@ -159,12 +159,8 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         microfacet: Some(&Self::TERMS),
         components: F::COMPONENTS,
         shape: Some(Shape::ALPHA),
-        parameters: &[N::PARAMETERS, M::PARAMETERS, F::PARAMETERS],
-        derive: |parameters| {
-            N::derive(parameters);
-            M::derive(parameters);
-            F::derive(parameters);
-        },
+        parameters: F::PARAMETERS,
+        derive: F::derive,
         rho_bound: if M::UNBOUNDED.is_some() { f64::INFINITY } else { 1.0 },
         parts: &Self::PARTS,
         integral: match M::UNBOUNDED {
@@ -291,7 +287,7 @@ mod tests {
     /// Extremes of a model's parameters, and what is between.
     fn extremes(model: &Model) -> Vec<Parameters> {
         let mut all = vec![model.defaults()];
-        for parameter in model.parameters() {
+        for parameter in model.parameters.iter() {
             let values = match parameter.name {
                 "eta" => vec![0.05, 1.0, 1.0 + 2f64.powi(-22), 1.0001, 1.01, 1.1, 1.5, 3.0, 1e3],
                 "k" => vec![0.0, 1e-3, 0.3, 3.0, 100.0],

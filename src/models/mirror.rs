@@ -34,7 +34,7 @@ impl<F: Fresnel> Made<F> {
         microfacet: Some(&Self::TERMS),
         components: F::COMPONENTS,
         shape: None,
-        parameters: &[F::PARAMETERS],
+        parameters: F::PARAMETERS,
         derive: F::derive,
         rho_bound: 1.0,
         parts: &Self::PARTS,

@@ -36,8 +36,8 @@ pub struct Model {
     pub components: &'static [Component],
     /// What its roughness is, if it takes one.
     pub shape: Option<Shape>,
-    /// The rest of its parameters, part by part.
-    pub parameters: &'static [&'static [Parameter]],
+    /// The rest of its parameters.
+    pub parameters: &'static [Parameter],
     /// What shaders get of them: each in its place, and what the host derives in f64 beside it.
     pub(crate) derive: fn(&mut Parameters),
     /// The bound on ρ_dh = ∫ (A + B) cos θ dω that the model promises; 1 conserves energy, more is a
@@ -228,6 +228,16 @@ pub fn all() -> impl Iterator<Item = &'static Model> {
     MODELS.into_iter().chain(siblings)
 }
 
+impl SlopeCounts {
+    /// A quarter more azimuths, and so many times the nodes: in fours, so that few rules differ.
+    fn more(self, times: f64) -> Self {
+        Self {
+            azimuths: self.azimuths + self.azimuths.div_ceil(4),
+            nodes: ((self.nodes as f64 * times).ceil() as usize).next_multiple_of(4),
+        }
+    }
+}
+
 impl Slopes {
     /// The map for a tolerance.
     pub(crate) fn map(&self, tolerance: f64) -> &SlopeMap {
@@ -252,15 +262,10 @@ impl Component {
 }
 
 impl Model {
-    /// The parameters beside the roughness and the components' weights.
-    pub fn parameters(&self) -> impl Iterator<Item = &'static Parameter> + use<> {
-        self.parameters.iter().copied().flatten()
-    }
-
-    /// All of them at their defaults; those that have none at the least that they take.
+    /// Its parameters at their defaults; those that have none at the least that they take.
     pub fn defaults(&self) -> Parameters {
         let mut parameters = [0.0; 8];
-        self.parameters().for_each(|p| parameters[p.place] = p.default.unwrap_or(p.range[0]));
+        self.parameters.iter().for_each(|p| parameters[p.place] = p.default.unwrap_or(p.range[0]));
         parameters
     }
 

@@ -110,7 +110,7 @@ impl Plan {
         let quantity = selection.quantity.as_deref().map(quantity::find).transpose()?;
         let tolerance = selection.tolerance.or(scene.tolerance).unwrap_or(DEFAULT_TOLERANCE);
         let materials: Vec<_> = match &selection.material {
-            Some(name) => vec![find_material(scene, name)?],
+            Some(name) => vec![scene.material(name)?],
             None => scene.materials.iter().collect(),
         };
 
@@ -150,9 +150,8 @@ impl Plan {
                 plan.leave_out(other.name, "the selection asks for another quantity");
             }
         }
-        let bases: Vec<_> =
-            plan.tables.iter().filter(|table| table.is_basis()).map(|t| &t.lobes[0]).collect();
-        let bases: Vec<_> = bases.into_iter().map(|lobe| (lobe.model, lobe.parameters)).collect();
+        let lobes = plan.tables.iter().filter(|table| table.is_basis()).map(|table| &table.lobes[0]);
+        let bases: Vec<_> = lobes.map(|lobe| (lobe.model, lobe.parameters)).collect();
         bases.into_iter().for_each(|(model, parameters)| plan.require_basis(model, &parameters, None));
         plan.describe(&materials)?;
         for model in MODELS {
@@ -403,22 +402,11 @@ impl TablePlan {
         material: &str,
         axes: Vec<Axis>,
     ) -> Result<Self> {
-        let found = find_material(scene, material)?;
+        let found = scene.material(material)?;
         let lobes = constant_lobes(found)
             .map_err(|why| Error::input(format!("material \"{material}\": {why}; tabulate its bases")))?;
         material_table(name.into(), quantity, found, lobes, axes)
     }
-}
-
-fn find_material<'a>(scene: &'a Scene, name: &str) -> Result<&'a Material> {
-    scene.materials.iter().find(|m| m.name == name).ok_or_else(|| {
-        let names: Vec<_> = scene.materials.iter().map(|m| m.name.as_str()).collect();
-        Error::input(format!(
-            "{}: no material \"{name}\"; there are {}",
-            scene.file.display(),
-            names.join(", ")
-        ))
-    })
 }
 
 fn material_table(
@@ -470,7 +458,7 @@ fn settings_of(lobe: &MaterialLobe, model: &Model) -> Vec<(Parameters, [bool; 3]
     let mut settings: Vec<(Parameters, [bool; 3])> = Vec::new();
     for channel in 0..3 {
         let mut parameters = model.defaults();
-        for parameter in model.parameters() {
+        for parameter in model.parameters.iter() {
             if let Some((_, given)) = lobe.parameters.iter().find(|(name, _)| name == parameter.name) {
                 parameters[parameter.place] = given[channel];
             }
@@ -490,7 +478,7 @@ fn masked(weights: [f64; 3], of: [bool; 3]) -> [f64; 3] {
 
 /// Parameters by their names.
 pub(super) fn named(model: &Model, places: &Parameters) -> BTreeMap<&'static str, f64> {
-    model.parameters().map(|parameter| (parameter.name, places[parameter.place])).collect()
+    model.parameters.iter().map(|parameter| (parameter.name, places[parameter.place])).collect()
 }
 
 impl fmt::Display for Plan {

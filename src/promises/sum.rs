@@ -64,7 +64,7 @@ impl<'a> Sum<'a> {
         let model = lobe.model;
         let known = |name: &str| {
             model.shape.is_some_and(|shape| name == "roughness" || name == shape.name)
-                || model.parameters().any(|parameter| parameter.name == name)
+                || model.parameters.iter().any(|parameter| parameter.name == name)
                 || model.components.iter().any(|component| component.weight == name)
         };
         if let Some(unknown) = parameters.iter().find(|parameter| !known(&parameter.name)) {
@@ -79,7 +79,7 @@ impl<'a> Sum<'a> {
                     name if model.shape.is_some_and(|shape| shape.name == name) => {
                         lobe.roughness = model.shape.map(|shape| shape.roughness(value));
                     }
-                    name if model.parameters().any(|parameter| parameter.name == name) => {
+                    name if model.parameters.iter().any(|parameter| parameter.name == name) => {
                         lobe.set(name, value)?;
                     }
                     name => {

@@ -14,7 +14,6 @@ pub use distribution::Distribution;
 pub use recipe::parse as parse_recipe;
 
 use crate::axis::{Axis, Variable};
-#[cfg(feature = "scene")]
 use crate::error::{Error, Result};
 use crate::plan::Rule;
 use crate::storage::Storage;
@@ -37,6 +36,20 @@ pub struct Scene {
     pub left_out: Vec<LeftOut>,
     /// What the user should know before trusting the tables.
     pub warnings: Vec<String>,
+}
+
+impl Scene {
+    /// The material of this name.
+    ///
+    /// # Errors
+    /// When there is none, with the names that there are.
+    pub fn material(&self, name: &str) -> Result<&Material> {
+        self.materials.iter().find(|material| material.name == name).ok_or_else(|| {
+            let names: Vec<_> = self.materials.iter().map(|material| material.name.as_str()).collect();
+            let file = self.file.display();
+            Error::input(format!("{file}: no material \"{name}\"; there are {}", names.join(", ")))
+        })
+    }
 }
 
 /// Something that was not baked, and the reason.

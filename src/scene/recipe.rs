@@ -70,7 +70,7 @@ fn lobe(item: Item) -> Result<MaterialLobe> {
     let mut keys = vec!["model"];
     keys.extend(model.terms().into_iter().map(|(kind, ..)| kind));
     keys.extend(model.shape.iter().flat_map(|shape| ["roughness", shape.name]));
-    keys.extend(model.parameters().map(|parameter| parameter.name));
+    keys.extend(model.parameters.iter().map(|parameter| parameter.name));
     keys.extend((!model.metals().is_empty()).then_some("metal"));
     keys.extend(model.components.iter().map(|component| component.weight));
     let fields = item.table(&keys)?;
@@ -87,7 +87,7 @@ fn lobe(item: Item) -> Result<MaterialLobe> {
     let metal = fields.get("metal").map(|item| item.one_of(metals())).transpose()?;
     let of_metal = |name: &str| metal.and_then(|metal| metal.get(name));
     let mut parameters = Vec::new();
-    for parameter in model.parameters() {
+    for parameter in model.parameters.iter() {
         match (fields.get(parameter.name), of_metal(parameter.name)) {
             (Some(item), Some(_)) => return Err(item.refuse("the metal has its own; keep one of them")),
             (None, Some(given)) => parameters.push((parameter.name.into(), given)),
@@ -158,7 +158,7 @@ fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
     // A model's own, of which a table of a material or of another model says that it has none.
     let own = models::all().flat_map(|model| {
         let shape = model.shape.map(|shape| shape.name);
-        shape.into_iter().chain(model.parameters().map(|parameter| parameter.name))
+        shape.into_iter().chain(model.parameters.iter().map(|parameter| parameter.name))
     });
     let own: BTreeSet<_> = own.collect();
     keys.extend(own.iter().filter(|&&name| name != "roughness"));
@@ -235,13 +235,13 @@ fn subject(
             let model = model(fields, item)?;
             for key in ["roughness"].iter().chain(own) {
                 let shape = model.shape.is_some_and(|shape| *key == "roughness" || shape.name == *key);
-                let has = shape || model.parameters().any(|parameter| parameter.name == *key);
+                let has = shape || model.parameters.iter().any(|parameter| parameter.name == *key);
                 if let (false, Some(item)) = (has, fields.get(key)) {
                     return Err(item.refuse(&format!("{} has no {key}; leave this away", model.name)));
                 }
             }
             let given = fields.get("roughness").or(model.shape.and_then(|shape| fields.get(shape.name)));
-            let parameters = model.parameters().filter_map(|parameter| {
+            let parameters = model.parameters.iter().filter_map(|parameter| {
                 let item = fields.get(parameter.name)?;
                 Some(item.number_in(parameter.range).map(|value| (parameter.name.into(), value)))
             });

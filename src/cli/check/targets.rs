@@ -52,12 +52,7 @@ pub fn model<'a>(args: &Args, name: &str, evaluator: &'a Evaluator) -> Result<Ta
     if let Some(shape) = model.shape.filter(|shape| !given(shape.name) && !given("roughness")) {
         whole.push(Parameter::new(shape.name, shape.least, shape.most)?);
     }
-    for parameter in model.parameters().filter(|parameter| !given(parameter.name)) {
-        whole.push(Parameter::new(parameter.name, parameter.range[0], parameter.range[1])?);
-    }
-    for component in model.components.iter().filter(|component| !given(component.weight)) {
-        whole.push(Parameter::new(component.weight, 0.0, 1.0)?);
-    }
+    whole.extend(beside_the_shape(model)?.into_iter().filter(|parameter| !given(&parameter.name)));
     ranges.extend(whole);
 
     // The recipe's own reader says what is wrong with a name or a value: at both ends of the ranges.
@@ -84,16 +79,10 @@ pub fn scene<'a>(
     material: Option<&str>,
     evaluator: &'a Evaluator,
 ) -> Result<Vec<Target<'a>>> {
-    if let Some(name) = material
-        && !scene.materials.iter().any(|material| material.name == name)
-    {
-        let names: Vec<_> = scene.materials.iter().map(|material| material.name.as_str()).collect();
-        return Err(Error::input(format!(
-            "{}: no material \"{name}\"; there are {}",
-            path.display(),
-            names.join(", ")
-        )));
-    }
+    let wanted: Vec<_> = match material {
+        Some(name) => vec![scene.material(name)?],
+        None => scene.materials.iter().collect(),
+    };
     let mut targets = Vec::new();
     if material.is_none() {
         for model in models::all() {
@@ -102,7 +91,6 @@ pub fn scene<'a>(
             }
         }
     }
-    let wanted = scene.materials.iter().filter(|m| material.is_none_or(|name| m.name == name));
     for material in wanted {
         let (file, name) = (quoted(&path.display().to_string()), quoted(&material.name));
         let subject = Sum::material(evaluator, material)?;
@@ -120,15 +108,17 @@ fn basis<'a>(model: &'static Model, roughness: [f64; 2], evaluator: &'a Evaluato
         let [low, high] = roughness;
         parameters.push(Parameter::new("roughness", low, high)?);
     }
-    for parameter in model.parameters() {
-        parameters.push(Parameter::new(parameter.name, parameter.range[0], parameter.range[1])?);
-    }
-    for component in model.components {
-        parameters.push(Parameter::new(component.weight, 0.0, 1.0)?);
-    }
+    parameters.extend(beside_the_shape(model)?);
     let lobe = Lobe::new(model, model.shape.map(|_| 1.0), vec![[0.0; 2]; 3]);
     let subject = Sum::model(evaluator, lobe, parameters)?;
     Ok(Target { subject, command: format!("gonio eval --model {}", model.name) })
+}
+
+/// A model's own parameters and its components' weights, each over its whole range.
+fn beside_the_shape(model: &Model) -> Result<Vec<Parameter>> {
+    let own = model.parameters.iter().map(|parameter| (parameter.name, parameter.range));
+    let weights = model.components.iter().map(|component| (component.weight, [0.0, 1.0]));
+    own.chain(weights).map(|(name, [low, high])| Parameter::new(name, low, high)).collect()
 }
 
 /// The roughnesses that the scene's materials and tables give a model, if it uses it.

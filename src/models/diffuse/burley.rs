@@ -17,7 +17,7 @@
 //! some is gained.
 
 use super::grazing::{self, cos2_d, scatter};
-use crate::models::{Component, Integral, Model, Shape, decade, part};
+use crate::models::{Component, Integral, Model, Shape, part};
 use crate::plan::VALUE_F32;
 use crate::reference;
 use std::f64::consts::FRAC_2_SQRT_PI;
@@ -34,7 +34,7 @@ pub(crate) static MODEL: Model = Model {
     rho_bound: 1.5576,
     parts: &[grazing::PART, part!("diffuse/burley")],
     value_f32: VALUE_F32,
-    integral: Integral::Smooth(nodes),
+    integral: Integral::Smooth(grazing::nodes),
     lobe: |p, a, s| {
         let f90 = 0.5 + 2.0 * s.alpha * cos2_d(p, a);
         [(INV_SQRT_PI * scatter(p.mu_i, f90)) * (INV_SQRT_PI * scatter(p.mu_e, f90)), 0.0]
@@ -44,11 +44,3 @@ pub(crate) static MODEL: Model = Model {
 
 /// 1/√π, once for each direction, as the shader has it.
 const INV_SQRT_PI: f64 = 0.5 * FRAC_2_SQRT_PI;
-
-/// Nodes in θe and δφ for tolerances 1e-1 … 1e-10, measured (`nodes.rs`): the error of each count alone,
-/// worst over θi and the roughness, is below a quarter of the tolerance.
-fn nodes(tolerance: f64) -> [usize; 2] {
-    const COUNTS: [[usize; 2]; 10] =
-        [[3, 1], [4, 3], [5, 4], [6, 4], [7, 5], [8, 6], [9, 6], [9, 7], [10, 7], [11, 8]];
-    COUNTS[decade(tolerance)]
-}

@@ -37,14 +37,14 @@ pub(crate) static MODEL: Model = Model {
     microfacet: None,
     components: &[Component { name: "A", weight: "weight", default: Some(1.0) }],
     shape: Some(Shape::SHARE),
-    parameters: &[&[Parameter {
+    parameters: &[Parameter {
         name: "albedo",
         summary: "rho of a facet, which light that is scattered n times takes n times",
         unit: "",
         range: [0.0, 1.0],
         default: Some(1.0),
         place: ALBEDO,
-    }]],
+    }],
     derive: |_| {},
     rho_bound: 1.0,
     parts: &[retro::PART, part!("diffuse/eon")],

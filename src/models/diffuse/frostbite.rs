@@ -18,7 +18,7 @@
 //! near 1 where ωi grazes: ρ_dh is up to 785/(504 · 1.51) = 1.0315.
 
 use super::grazing::{self, cos2_d, scatter};
-use crate::models::{Component, Integral, Model, Shape, decade, part};
+use crate::models::{Component, Integral, Model, Shape, part};
 use crate::plan::VALUE_F32;
 use crate::reference;
 use std::f64::consts::FRAC_1_PI;
@@ -35,7 +35,7 @@ pub(crate) static MODEL: Model = Model {
     rho_bound: 1.0315,
     parts: &[grazing::PART, part!("diffuse/frostbite")],
     value_f32: VALUE_F32,
-    integral: Integral::Smooth(nodes),
+    integral: Integral::Smooth(grazing::nodes),
     lobe: |p, a, s| {
         let f90 = s.alpha * (0.5 + 2.0 * cos2_d(p, a));
         let factor = FRAC_1_PI * (1.0 - s.alpha * (0.51 / 1.51));
@@ -43,11 +43,3 @@ pub(crate) static MODEL: Model = Model {
     },
     reference: Some(reference::FROSTBITE),
 };
-
-/// Nodes in θe and δφ for tolerances 1e-1 … 1e-10, measured (`nodes.rs`): the error of each count alone,
-/// worst over θi and the roughness, is below a quarter of the tolerance.
-fn nodes(tolerance: f64) -> [usize; 2] {
-    const COUNTS: [[usize; 2]; 10] =
-        [[3, 1], [4, 3], [5, 4], [6, 4], [7, 5], [8, 6], [9, 6], [9, 7], [10, 7], [11, 8]];
-    COUNTS[decade(tolerance)]
-}

@@ -41,14 +41,6 @@ pub(crate) trait Fresnel {
     fn fresnel(c: f64, x: f64, s: &Setting) -> [f64; 2];
 }
 
-/// A quarter more azimuths, and so many times the nodes: in fours, so that few rules differ.
-fn more(SlopeCounts { azimuths, nodes }: SlopeCounts, times: f64) -> SlopeCounts {
-    SlopeCounts {
-        azimuths: azimuths + azimuths.div_ceil(4),
-        nodes: ((nodes as f64 * times).ceil() as usize).next_multiple_of(4),
-    }
-}
-
 /// What an exact term of index n takes, by |n² − 1| and |n² + 1|.
 ///
 /// In c, F has branch points at c² = 1 − n² and poles at c² = 1/(n² + 1): what Gauss–Legendre feels is how near they
@@ -64,8 +56,8 @@ fn exact(schlick: SlopeCounts, [minus, plus]: [f64; 2], tolerance: f64) -> Slope
         _ => [2.0, 4.0],
     };
     match tolerance {
-        _ if is_fine(tolerance) => more(schlick, fine),
-        _ if decade(tolerance) >= decade(1e-5) => more(schlick, coarse),
+        _ if is_fine(tolerance) => schlick.more(fine),
+        _ if decade(tolerance) >= decade(1e-5) => schlick.more(coarse),
         _ => schlick,
     }
 }

@@ -8,26 +8,14 @@ pub(crate) mod smith_correlated;
 pub(crate) mod smith_separable;
 
 use super::ndf::Ndf;
-use super::{Parameter, SlopeCounts, Term};
+use super::{SlopeCounts, Term};
 use crate::reference;
-use crate::setting::{Parameters, Setting};
-
-/// A quarter more. In fours, so that few rules differ.
-pub(crate) fn more(SlopeCounts { azimuths, nodes }: SlopeCounts) -> SlopeCounts {
-    SlopeCounts {
-        azimuths: azimuths + azimuths.div_ceil(4),
-        nodes: (nodes + nodes.div_ceil(4)).next_multiple_of(4),
-    }
-}
+use crate::setting::Setting;
 
 /// G2 of the normals of `N`.
 pub(crate) trait Masking {
     const TERM: Term;
     const REFERENCE: &'static dyn reference::Masking;
-    const PARAMETERS: &'static [Parameter] = &[];
-
-    /// Adds what its shader takes beside the parameters, or in place of them.
-    fn derive(_parameters: &mut Parameters) {}
     /// Why ρ has no bound, if it has none.
     const UNBOUNDED: Option<&'static str> = None;
 

@@ -1,18 +1,44 @@
-//! Schlick's masking for any k, twin of `shaders/masking/schlick.wgsl`: G1 = μ / (μ (1 − k) + k).
+//! Schlick's masking, whatever its k: G1 = μ / (μ (1 − k) + k). Twin of `shaders/masking/schlick.wgsl`.
+
+use super::Masking;
+use crate::models::ndf::Ndf;
+use crate::models::{SlopeCounts, Term};
+use crate::reference;
+use crate::setting::Setting;
+
+/// A choice of k.
+pub(crate) trait Schlick {
+    const TERM: Term;
+    const REFERENCE: &'static dyn reference::Masking;
+
+    /// In [0, 1/2].
+    fn k(alpha: f64) -> f64;
+}
+
+impl<S: Schlick> Masking for S {
+    const TERM: Term = S::TERM;
+    const REFERENCE: &'static dyn reference::Masking = S::REFERENCE;
+
+    fn counts(correlated: [SlopeCounts; 2], _tolerance: f64) -> [SlopeCounts; 2] {
+        correlated.map(|counts| counts.more(1.25))
+    }
+
+    fn visibility<N: Ndf>(mu_i: f64, mu_e: f64, s: &Setting) -> f64 {
+        let k = S::k(s.alpha);
+        0.25 / (below(mu_i, k) * below(mu_e, k))
+    }
+
+    fn masking<N: Ndf>(x: f64, y: f64, mu_e: f64, s: &Setting) -> f64 {
+        let k = S::k(s.alpha);
+        2.0 / mu_e * below(mu_e, k) * (mu_e * (1.0 - k) * x + k * y)
+    }
+
+    fn mirror(mu: f64) -> f64 {
+        (mu / below(mu, S::k(0.0))).powi(2)
+    }
+}
 
 /// μ (1 − k) + k
 fn below(mu: f64, k: f64) -> f64 {
     mu * (1.0 - k) + k
-}
-
-pub(super) fn visibility(mu_i: f64, mu_e: f64, k: f64) -> f64 {
-    0.25 / (below(mu_i, k) * below(mu_e, k))
-}
-
-pub(super) fn masking([x, y]: [f64; 2], mu_e: f64, k: f64) -> f64 {
-    2.0 / mu_e * below(mu_e, k) * (mu_e * (1.0 - k) * x + k * y)
-}
-
-pub(super) fn mirror(mu: f64, k: f64) -> f64 {
-    (mu / below(mu, k)).powi(2)
 }

@@ -1,7 +1,7 @@
 //! Smith's masking and shadowing as if independent: Walter et al. 2007, eq. 23. Twin of
 //! `shaders/masking/smith_separable.wgsl`.
 
-use super::{Masking, more};
+use super::Masking;
 use crate::models::ndf::Ndf;
 use crate::models::{SlopeCounts, Term, is_fine, part};
 use crate::reference;
@@ -21,7 +21,7 @@ impl Masking for SmithSeparable {
     /// More on the near side: for μ ≪ α its G2 bends where G1(ωi) does, which correlated heights wash out by
     /// Λ(ωe). Measured: an eighth more leaves 1.1 times 1e-6.
     fn counts([near, far]: [SlopeCounts; 2], tolerance: f64) -> [SlopeCounts; 2] {
-        [if is_fine(tolerance) { near } else { more(near) }, far]
+        [if is_fine(tolerance) { near } else { near.more(1.25) }, far]
     }
 
     fn visibility<N: Ndf>(mu_i: f64, mu_e: f64, s: &Setting) -> f64 {

@@ -9,19 +9,15 @@ pub(crate) mod ggx_samples;
 
 use super::fresnel::Fresnel;
 use super::masking::Masking;
-use super::{Branches, Parameter, Part, SlopeCounts, Term};
+use super::{Branches, Part, SlopeCounts, Term};
 use crate::pair::Half;
 use crate::reference;
-use crate::setting::{Parameters, Setting};
+use crate::setting::Setting;
 
 /// A distribution of normals, with the maps that integrate and sample it.
 pub(crate) trait Ndf {
     const TERM: Term;
     const REFERENCE: &'static dyn reference::Ndf;
-    const PARAMETERS: &'static [Parameter] = &[];
-
-    /// Adds what its shader takes beside the parameters, or in place of them.
-    fn derive(_parameters: &mut Parameters) {}
     /// The shaders of its maps.
     const COARSE: Part;
     const FINE: Part;
