@@ -1,5 +1,6 @@
 //! The CPU path: the same rules as the kernels, in f64, on all cores.
 
+use crate::mapped::{Sample, Texel};
 use crate::models::ALPHA_MIN_INTEGRAL;
 use crate::plan::{Lobe, TablePlan};
 use crate::work::{Inner, Work, WorkKind};
@@ -127,6 +128,14 @@ fn integrate(work: &Work, inner: &Inner, lobe: &Lobe, row: usize, k: usize) -> [
                 add(pairs[k].weight * azimuth.weight, (lobe.model.lobe)(&pairs[k], azimuth, setting));
             }
         }
+        Inner::Mapped(work) => match work.texel(row * work.fixed.len() + k) {
+            Texel::Limit(limit) => return limit,
+            Texel::Samples(samples) => {
+                for Sample { pair, azimuth, weight } in &samples {
+                    add(*weight, (lobe.model.lobe)(pair, azimuth, setting));
+                }
+            }
+        },
         Inner::Analytic { directional, mus } => return directional(mus[k], setting),
     }
     sum

@@ -80,6 +80,7 @@ pub mod error;
 pub mod files;
 pub mod gpu;
 mod interpolation;
+pub mod mapped;
 pub mod models;
 mod optimise;
 pub mod pair;

@@ -74,6 +74,25 @@ impl Pair {
 }
 
 impl Pair {
+    /// The same of cos θ and sin θ of both, for whoever has these to their last digits: angles near the horizon do not.
+    /// Under an integral both are right down to 0.
+    pub(crate) fn of_cosines_and_sines([mu_i, mu_e]: [f64; 2], [s_i, s_e]: [f64; 2]) -> Self {
+        let (sum, hz) = (s_i + s_e, 0.5 * (mu_i + mu_e));
+        let dz = 0.5 * (mu_i - mu_e);
+        // (si − se)/2, near the horizon as (μe² − μi²)/(si + se)/2
+        let dt = if sum > 1.0 { -2.0 * dz * hz / sum } else { 0.5 * (s_i - s_e) };
+        Self {
+            hz2: hz * hz,
+            dt2: dt * dt,
+            ss: s_i * s_e,
+            sd: dt * dt + dz * dz,
+            mu_i,
+            mu_e,
+            bin: 0.0,
+            weight: 1.0,
+        }
+    }
+
     /// As the shader lays it out.
     pub(crate) fn to_array(self) -> [f64; 8] {
         [self.hz2, self.dt2, self.ss, self.sd, self.mu_i, self.mu_e, self.bin, self.weight]

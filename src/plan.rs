@@ -369,14 +369,16 @@ impl TablePlan {
         for Lobe { model, .. } in &self.lobes {
             let fits = match model.integral {
                 Integral::Slopes(_) => model.has_samplers() || self.rule.samples().is_none(),
-                Integral::Smooth(_) | Integral::Kinked(_) => self.rule.samples().is_none(),
+                Integral::Smooth(_) | Integral::Kinked(_) | Integral::Mapped(_) => {
+                    self.rule.samples().is_none()
+                }
                 Integral::Delta(_) => matches!(self.rule, Rule::Warped | Rule::Grid { .. }),
                 Integral::Unbounded(_) => self.quantity.evaluation == Evaluation::Value,
             };
             if !fits {
                 let what = match model.integral {
                     Integral::Delta(_) => "a delta",
-                    Integral::Slopes(_) => "a lobe without samplers",
+                    Integral::Slopes(_) | Integral::Mapped(_) => "a lobe without samplers",
                     _ => "no microfacet lobe",
                 };
                 return Err(format!(

@@ -124,9 +124,21 @@ fn most(
     })
 }
 
+/// An azimuth φ of ωm from that of ωe, and the horizon of ωi there.
+pub(crate) struct Turn {
+    pub sin: f64,
+    pub cos: f64,
+    /// tan θe cos φ
+    pub c: f64,
+    /// tan θm of the normal that reflects ωe onto the horizon.
+    pub t_max: f64,
+    /// dφ/π: both halves of the azimuth, over 2π.
+    pub weight: f64,
+}
+
 /// Azimuths φ = π/2 ∓ d sinh u of ωm from ωe's, u ∈ [0, asinh(π/2d)]: the horizon turns within μ of
 /// φ = π/2. c = tan θe cos φ; t_max = c + √(c² + 1), without cancellation where c < 0.
-pub(crate) fn side(mu: f64, sign: f64, rule: &[Node], tolerance: f64) -> impl Iterator<Item = [f64; 4]> {
+pub(crate) fn turns(mu: f64, sign: f64, rule: &[Node], tolerance: f64) -> impl Iterator<Item = Turn> {
     // Found by search: smaller wastes nodes on a turn that contributes nothing, larger misses it.
     let d_min = if is_fine(tolerance) { 1e-3 } else { 0.1 };
     let tan = ((1.0 - mu) * (1.0 + mu)).sqrt() / mu;
@@ -134,10 +146,16 @@ pub(crate) fn side(mu: f64, sign: f64, rule: &[Node], tolerance: f64) -> impl It
     let u_max = (FRAC_PI_2 / d).asinh();
     rule.iter().map(move |node| {
         let u = u_max * node.x;
-        let c = sign * tan * (d * u.sinh()).sin();
+        let (sin_turned, cos_turned) = (d * u.sinh()).sin_cos();
+        let (cos, sin) = (sign * sin_turned, cos_turned);
+        let c = tan * cos;
         let root = c.hypot(1.0);
         let t_max = if c > 0.0 { c + root } else { 1.0 / (root - c) };
-        // dφ/π: both halves of the azimuth, over 2π
-        [mu * c, t_max, 1.0 / t_max, node.weight * u_max * d * u.cosh() / PI]
+        Turn { sin, cos, c, t_max, weight: node.weight * u_max * d * u.cosh() / PI }
     })
+}
+
+/// The same as the kernel takes them: (μe c, t_max, 1/t_max, weight).
+pub(crate) fn side(mu: f64, sign: f64, rule: &[Node], tolerance: f64) -> impl Iterator<Item = [f64; 4]> {
+    turns(mu, sign, rule, tolerance).map(move |turn| [mu * turn.c, turn.t_max, 1.0 / turn.t_max, turn.weight])
 }

@@ -2,6 +2,7 @@
 //! in f64. The device gets them rounded to f32, the CPU path as they are.
 
 use crate::axis::Variable;
+use crate::mapped::{Fixed, MappedWork};
 use crate::models::{Integral, Sampling, Slopes, decade};
 use crate::pair::{Azimuth, MU_MIN, Pair, off_horizon};
 use crate::plan::{Lobe, Rule, TablePlan};
@@ -38,6 +39,8 @@ pub(crate) enum Inner {
     Samples(SampleWork),
     /// Over δφ, for each pair of θ.
     Product { pairs: Vec<Pair>, azimuths: Vec<Azimuth> },
+    /// Over directions that the host finds.
+    Mapped(MappedWork),
     /// In closed form, for each μ.
     Analytic { directional: fn(f64, &Setting) -> [f64; 2], mus: Vec<f64> },
 }
@@ -106,6 +109,7 @@ impl Inner {
             Self::Slopes(work) => work.mus.len(),
             Self::Samples(work) => work.mus.len() * work.chunks,
             Self::Analytic { mus, .. } => mus.len(),
+            Self::Mapped(work) => work.fixed.len(),
             Self::Product { pairs, .. } => pairs.len(),
         }
     }
@@ -117,6 +121,7 @@ impl Inner {
             Self::Samples(work) => work.chunk,
             Self::Product { azimuths, .. } => azimuths.len(),
             Self::Analytic { .. } => 1,
+            Self::Mapped(work) => work.most(),
         }
     }
 }
@@ -157,7 +162,7 @@ fn integrals(table: &TablePlan, lobe: &Lobe, alphas: Vec<f64>, thetas: &[f64], w
         let outer = weights.iter().flat_map(|&weight| iter::repeat_n(weight, 2 * theta)).collect();
         of(Inner::Product { pairs, azimuths: kinked_azimuths(phi) }, outer)
     };
-    let mus = || thetas.iter().map(|theta| theta.cos().max(MU_MIN)).collect();
+    let mus = || -> Vec<f64> { thetas.iter().map(|theta| theta.cos().max(MU_MIN)).collect() };
     let sampled = |sampler: Sampler, slopes: &'static Slopes, by: &'static Sampling, samples: usize| {
         let work = SampleWork::new(sampler, slopes, by, mus(), samples);
         let chunks = iter::repeat_n(1.0 / samples as f64, work.chunks);
@@ -186,6 +191,11 @@ fn integrals(table: &TablePlan, lobe: &Lobe, alphas: Vec<f64>, thetas: &[f64], w
         (_, Integral::Kinked(nodes)) => kinked(nodes(table.rule_tolerance())),
         (_, Integral::Slopes(slopes)) => {
             return slopes_work(table, lobe, slopes, [alphas, mus()], weights);
+        }
+        (_, Integral::Mapped(map)) => {
+            let fixed = mus().into_iter().map(|mu| Fixed { mu }).collect();
+            let work = MappedWork::new(map, fixed, lobe.settings(&alphas), table.rule_tolerance());
+            of(Inner::Mapped(work), weights.to_vec())
         }
         (_, Integral::Delta(directional)) => {
             let mus = thetas.iter().map(|theta| theta.cos()).collect();

@@ -2,10 +2,10 @@
 
 fn lobe(p: Pair, a: Azimuth, alpha: real, row: real) -> real2 {
     let h = half_vector(p, a);
-    return fresnel(h.c, h.one_minus_c) * (ndf(h, p.hz2, alpha) * row);
+    return fresnel(h.c, h.one_minus_c) * (ndf(h, p.hz2, alpha) * visibility_of_normal(row, p, h));
 }
 
-/// What all azimuths share.
+/// What all azimuths share. It has the unit of D with it, so that what `visibility_of_normal` makes of it is in proportion.
 fn lobe_row(p: Pair, alpha: real) -> real {
     return visibility(p.mu_i, p.mu_e, alpha) * NDF_UNIT;
 }

@@ -19,3 +19,8 @@ fn mirror_masking(mu: real) -> real {
     let g1 = mu / (mu * (1.0 - k) + k);
     return g1 * g1;
 }
+
+/// No more than that: it does not depend on ωm.
+fn visibility_of_normal(share: real, p: Pair, h: Half) -> real {
+    return share;
+}

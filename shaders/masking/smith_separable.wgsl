@@ -16,3 +16,8 @@ fn masking(x: real4, y: real4, e: Masked) -> real4 {
 fn mirror_masking(mu: real) -> real {
     return 1.0;
 }
+
+/// No more than that: it does not depend on ωm.
+fn visibility_of_normal(share: real, p: Pair, h: Half) -> real {
+    return share;
+}

@@ -2,9 +2,10 @@
 
 use super::compose::{Kernel, VALUE_WINDOW, compose, validate};
 use super::loops::{self, SAFE_TURNS};
-use super::stage::{Job, Rows, Stage, Stages, TILE_SUMS};
+use super::stage::{Job, Rows, Stage, Stages, TILE_SUMS, Upload};
 use crate::axis::Variable;
 use crate::error::{Error, Result};
+use crate::mapped::MappedWork;
 use crate::models::Model;
 use crate::plan::{Precision, TablePlan};
 use crate::quantity::Evaluation;
@@ -87,6 +88,8 @@ const INVOCATIONS_PER_DISPATCH: usize = 1 << 21;
 /// Bytes of a tile's result, and of the raw integrals behind it.
 const TILE_BYTES: usize = 1 << 25;
 const WORKGROUP: usize = 64;
+/// Points of integrals that are uploaded together: 10 MiB.
+const POINTS_PER_DISPATCH: usize = 1 << 18;
 /// 32 a workgroup of values, of which there are at most 65,535.
 const ROWS_PER_DISPATCH: usize = 1 << 20;
 
@@ -141,7 +144,8 @@ impl Layout {
 
     /// The ranges of units that fit a tile each, by size alone: results must not depend on speed.
     pub fn tiles(&self, stages: &[Stages]) -> Vec<Range<usize>> {
-        let raw = stages.iter().map(Stages::raw_bytes_per_unit).max().unwrap_or(0);
+        let behind = |stages: &Stages| stages.raw_bytes_per_unit().max(stages.uploaded_bytes_per_unit());
+        let raw = stages.iter().map(behind).max().unwrap_or(0);
         // Whole groups of what an invocation takes together.
         let per_tile = (TILE_BYTES / raw.max(self.bytes(1)) / TILE_ALPHAS * TILE_ALPHAS).max(TILE_ALPHAS);
         (0..self.units).step_by(per_tile).map(|first| first..(first + per_tile).min(self.units)).collect()
@@ -248,7 +252,10 @@ impl Baker {
             let mut results = rows.len() * inner.per_unit;
             let raw = |results: usize| self.output(results * 2 * inner.precision.bytes());
             let mut output = if outer.is_empty() { buffer.clone() } else { raw(results) };
-            self.steps(inner, job, range, &order, &output, &mut steps)?;
+            match &inner.mapped {
+                Some(work) => self.mapped_steps(inner, work, job, range, &output, &mut steps)?,
+                None => self.steps(inner, job, range, &order, &output, &mut steps)?,
+            }
             for (k, sum) in outer.iter().enumerate() {
                 let is_last = k + 1 == outer.len();
                 let columns = results / sum.job.nodes as usize;
@@ -292,6 +299,35 @@ impl Baker {
             let job = Job { first: count(first)?, end: count(end)?, ..job };
             let job = self.init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
             let buffers = [&job, output].into_iter().chain(&stage.inputs).chain(more_inputs.iter().copied());
+            steps.push(Step {
+                pipeline: pipeline.clone(),
+                bind_group: self.bind(&pipeline, buffers.map(wgpu::Buffer::as_entire_binding)),
+                workgroups: [count((end - first).div_ceil(WORKGROUP))?, 1],
+                evaluations: ((end - first) * stage.cost) as u64,
+            });
+        }
+        Ok(())
+    }
+
+    /// The dispatches of integrals by directions that the host finds: as many as fit a buffer at a time.
+    fn mapped_steps(
+        &self,
+        stage: &Stage,
+        work: &MappedWork,
+        job: Job,
+        range: Range<usize>,
+        output: &wgpu::Buffer,
+        steps: &mut Vec<Step>,
+    ) -> Result<()> {
+        let pipeline = self.pipeline(stage.kernel, stage.model, stage.channels, stage.precision)?;
+        let upload = Upload { baker: self, precision: stage.precision };
+        let per_step = (POINTS_PER_DISPATCH / stage.cost).max(1);
+        for first in range.clone().step_by(per_step) {
+            let end = (first + per_step).min(range.end);
+            let job = Job { first: count(first)?, end: count(end)?, ..job };
+            let job = self.init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
+            let texels = upload.texels(&work.texels(first..end));
+            let buffers = [&job, output].into_iter().chain(&stage.inputs).chain(&texels);
             steps.push(Step {
                 pipeline: pipeline.clone(),
                 bind_group: self.bind(&pipeline, buffers.map(wgpu::Buffer::as_entire_binding)),

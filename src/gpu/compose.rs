@@ -26,6 +26,8 @@ pub enum Kernel {
     FineSlopes,
     /// Integrals over (θe, δφ).
     Product,
+    /// Integrals over directions that the host finds.
+    Mapped,
     /// Integrals by sampling the distribution of normals.
     Ndf,
     /// Integrals by sampling the visible normals.
@@ -105,7 +107,8 @@ impl Kernel {
             (Self::Values | Self::AddValues, 1) => &[part!("kernel/store_1"), part!("kernel/values")],
             (Self::Values | Self::AddValues, 2) => &[part!("kernel/store_2"), part!("kernel/values")],
             (Self::Values | Self::AddValues, _) => &[part!("kernel/store_3"), part!("kernel/values")],
-            (Self::Points | Self::AddPoints, _) => &[part!("kernel/points")],
+            (Self::Points | Self::AddPoints, _) => &[part!("kernel/point"), part!("kernel/points")],
+            (Self::Mapped, _) => &[part!("kernel/point"), part!("kernel/mapped")],
             (Self::Slopes, _) => {
                 &[part!("lobe/slopes"), part!("kernel/nodes_uniform"), part!("kernel/slopes")]
             }

@@ -40,6 +40,7 @@ fn turns(work: &Work) -> usize {
                 Inner::Product { azimuths, .. } => in_blocks(azimuths.len()),
                 // And a loop over four α.
                 Inner::Samples(work) => in_blocks(work.chunk) + 5,
+                Inner::Mapped(work) => in_blocks(work.most()),
                 Inner::Analytic { .. } => 0,
             };
             outer.iter().map(|matrix| in_blocks(matrix.columns)).fold(inner, usize::max)
@@ -47,7 +48,7 @@ fn turns(work: &Work) -> usize {
     }
 }
 
-/// A sum in blocks of 32, as `product.wgsl`, `sampling.wgsl` and `sum.wgsl` have it.
+/// A sum in blocks of 32, as `product.wgsl`, `mapped.wgsl`, `sampling.wgsl` and `sum.wgsl` have it.
 fn in_blocks(terms: usize) -> usize {
     terms + 2 * terms.div_ceil(32) + 1
 }

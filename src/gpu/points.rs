@@ -7,6 +7,7 @@ use super::device::Device;
 use super::evaluate::Flight;
 use super::stage::Job;
 use crate::error::Result;
+use crate::mapped::Sample;
 use crate::pair::{Azimuth, Pair};
 use crate::plan::{Lobe, Precision};
 use crate::points::Angles;
@@ -29,8 +30,8 @@ pub(crate) struct Points<'a> {
     slots: [Slot; 2],
 }
 
-/// `Point` of `shaders/kernel/points.wgsl`.
-type Factors = [f32; 9];
+/// `Point` of `shaders/kernel/point.wgsl`.
+type Factors = [f32; 10];
 
 /// One of two that take turns.
 struct Slot {
@@ -141,8 +142,7 @@ impl<'a> Points<'a> {
 }
 
 fn factors((pair, azimuth): (Pair, Azimuth)) -> Factors {
-    let Pair { hz2, dt2, ss, sd, mu_i, mu_e, .. } = pair;
-    [hz2, dt2, ss, sd, mu_i, mu_e, azimuth.sin2, azimuth.cos2, azimuth.back].map(|x| x as f32)
+    Sample { pair, azimuth, weight: 1.0 }.to_array().map(|x| x as f32)
 }
 
 /// 0..`n` in pieces of `most`.

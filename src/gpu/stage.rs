@@ -4,6 +4,7 @@ use super::baker::{Baker, count};
 use super::compose::{COARSE_NODES, Kernel, VALUE_WINDOW};
 use crate::check::stride;
 use crate::error::{Error, Result};
+use crate::mapped::{MappedWork, POINT, Texel};
 use crate::models::{ALPHA_MIN_INTEGRAL, Model, SlopeCounts, is_fine};
 use crate::pair::{Azimuth, Pair};
 use crate::plan::{INTEGRAL_F32, Lobe, Precision};
@@ -33,6 +34,8 @@ pub(super) struct Stage {
     pub inputs: Vec<wgpu::Buffer>,
     /// The rows of a table of values, which are uploaded for each tile.
     pub rows: Option<Rows>,
+    /// The directions of integrals that the host finds, which are uploaded for each dispatch.
+    pub mapped: Option<MappedWork>,
     /// Results for each unit of the table (see `Layout`) or source of its α; not of outer sums.
     pub per_unit: usize,
     /// Units whose results one invocation makes.
@@ -104,6 +107,7 @@ impl Stages {
                     job: Job::new(lobe, 1.0),
                     inputs: vec![upload.quads(azimuths)],
                     rows: Some(Rows::new(&alphas, pairs)),
+                    mapped: None,
                     per_unit: azimuths.len().div_ceil(4),
                     units: 1,
                     cost: 4,
@@ -166,6 +170,13 @@ impl Stages {
         let direct = !self.outer.is_empty() && self.sources.is_none();
         if direct { self.inner.per_unit * 2 * self.inner.precision.bytes() } else { 0 }
     }
+
+    /// Bytes of what is uploaded for each unit.
+    pub fn uploaded_bytes_per_unit(&self) -> usize {
+        let points =
+            if self.inner.kernel == Kernel::Mapped { self.inner.per_unit * self.inner.cost } else { 0 };
+        points * POINT * self.inner.precision.bytes()
+    }
 }
 
 impl Stage {
@@ -213,6 +224,8 @@ impl Stage {
                 }
                 (kernel, work.chunk, rows, inputs)
             }
+            // Its points are uploaded for each dispatch.
+            Inner::Mapped(_) => (Kernel::Mapped, 0, 0, vec![upload.reals(alphas)]),
             Inner::Analytic { mus, .. } => {
                 (Kernel::Analytic, 0, 0, vec![upload.reals(alphas), upload.reals(mus)])
             }
@@ -233,6 +246,7 @@ impl Stage {
             job,
             inputs,
             rows: None,
+            mapped: if let Inner::Mapped(work) = inner { Some(work.clone()) } else { None },
             per_unit: 1,
             units,
             cost: units * inner.cost(),
@@ -251,6 +265,7 @@ impl Stage {
             job: Job { azimuths: count(matrix.rows)?, nodes: count(matrix.columns)?, ..job },
             inputs: vec![upload.fours_of_rows(matrix)],
             rows: None,
+            mapped: None,
             per_unit: 0,
             units: TILE_SUMS,
             // Of 4 × 4 sums: some 64 operations a column, as an evaluation.
@@ -299,12 +314,33 @@ impl Job {
 }
 
 /// Uploads numbers in the kernels' precision.
-struct Upload<'a> {
-    baker: &'a Baker,
-    precision: Precision,
+pub(super) struct Upload<'a> {
+    pub baker: &'a Baker,
+    pub precision: Precision,
 }
 
 impl Upload<'_> {
+    /// The points of some texels, one texel after the other: the range of each, what has none, and all points.
+    pub fn texels(&self, texels: &[Texel]) -> [wgpu::Buffer; 3] {
+        let (mut ranges, mut limits, mut points) = (Vec::new(), Vec::new(), Vec::new());
+        for texel in texels {
+            let first = points.len() as u32;
+            limits.push(match texel {
+                Texel::Limit(limit) => *limit,
+                Texel::Samples(samples) => {
+                    points.extend(samples.iter().map(|sample| sample.to_array()));
+                    [0.0; 2]
+                }
+            });
+            ranges.push([first, points.len() as u32]);
+        }
+        // A binding is never empty.
+        if points.is_empty() {
+            points.push([0.0; POINT]);
+        }
+        [self.input(&ranges), self.reals(limits.as_flattened()), self.reals(points.as_flattened())]
+    }
+
     fn reals(&self, values: &[f64]) -> wgpu::Buffer {
         match self.precision {
             Precision::F32 => self.input(&values.iter().map(|&x| x as f32).collect::<Vec<_>>()),

@@ -7,16 +7,18 @@
 use super::fresnel::{
     Fresnel, conductor::Conductor, dielectric::Dielectric, f82::F82, none::Constant, schlick::Schlick,
 };
+use super::half_vector;
 use super::masking::{
-    Masking, none::Unmasked, schlick_ggx::SchlickGgx, schlick_ggx_direct::SchlickGgxDirect,
+    Masking, kelemen::Kelemen, none::Unmasked, schlick_ggx::SchlickGgx, schlick_ggx_direct::SchlickGgxDirect,
     smith_correlated::SmithCorrelated, smith_separable::SmithSeparable,
 };
 use super::ndf::{Map, Ndf, beckmann::Beckmann, ggx::Ggx};
 use super::{
-    Integral, Metal, Model, Part, Sampling, Shape, SlopeCounts, SlopeMap, Slopes, Term, mirror, part,
+    Integral, Metal, Model, Parameter, Part, Sampling, SlopeCounts, SlopeMap, Slopes, Term, mirror, part,
 };
 use crate::error::{Error, Result};
-use crate::pair::{Azimuth, Half, Pair};
+use crate::mapped;
+use crate::pair::{Azimuth, Half, MU_MIN, Pair};
 use crate::reference;
 use crate::setting::{Parameters, Setting};
 use std::marker::PhantomData;
@@ -48,7 +50,7 @@ macro_rules! parts {
         pub static FRESNELS: [Term; [$(<$fresnel>::TERM.name),*].len()] = [$(<$fresnel>::TERM),*];
 
         fn with_fresnels<N: Ndf, M: Masking>() -> Vec<Model> {
-            vec![$(named(Made::<N, M, $fresnel>::MODEL)),*]
+            vec![$(named(Made::<N, M, $fresnel>::MODEL, N::PARAMETERS)),*]
         }
 
         fn with_maskings<N: Ndf>() -> Vec<Model> {
@@ -60,13 +62,13 @@ macro_rules! parts {
             LazyLock::new(|| [$(with_maskings::<$ndf>()),*].into_iter().flatten().collect());
 
         /// The ideal mirror with every Fresnel term.
-        pub static MIRRORS: LazyLock<Vec<Model>> = LazyLock::new(|| vec![$(named(mirror::Made::<$fresnel>::MODEL)),*]);
+        pub static MIRRORS: LazyLock<Vec<Model>> = LazyLock::new(|| vec![$(named(mirror::Made::<$fresnel>::MODEL, &[])),*]);
     };
 }
 
 parts! {
     ndfs: Ggx, Beckmann;
-    maskings: SmithCorrelated, SmithSeparable, SchlickGgx, SchlickGgxDirect, Unmasked;
+    maskings: SmithCorrelated, SmithSeparable, SchlickGgx, SchlickGgxDirect, Kelemen, Unmasked;
     fresnels: Schlick, Constant, Dielectric, Conductor, F82;
 }
 
@@ -131,8 +133,8 @@ fn term(kind: &str, terms: &'static [Term], name: &str) -> Result<&'static Term>
 }
 
 /// The model with a name that tells its terms: the NDF's alone with the defaults, else all of them. It is made
-/// once and lives as long as the process.
-fn named(model: Model) -> Model {
+/// once and lives as long as the process. `more` are parameters beside its Fresnel term's.
+fn named(model: Model, more: &'static [Parameter]) -> Model {
     let Some(Microfacet { ndf, masking, fresnel, .. }) = model.microfacet else { return model };
     let terms: Vec<_> = [ndf].into_iter().chain(masking).chain([fresnel]).collect();
     let keep = |text: fn(&Term) -> &'static str, between: &str| -> &'static str {
@@ -144,6 +146,10 @@ fn named(model: Model) -> Model {
         name: if is_default { ndf.name } else { keep(|term| term.name, "-") },
         summary: keep(|term| term.summary, ", "),
         source: keep(|term| term.source, "; "),
+        parameters: match more {
+            [] => model.parameters,
+            _ => [more, model.parameters].concat().leak(),
+        },
         ..model
     }
 }
@@ -158,14 +164,20 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         source: N::TERM.source,
         microfacet: Some(&Self::TERMS),
         components: F::COMPONENTS,
-        shape: Some(Shape::ALPHA),
+        shape: Some(N::SHAPE),
         parameters: F::PARAMETERS,
-        derive: F::derive,
+        derive: |parameters| {
+            N::derive(parameters);
+            F::derive(parameters);
+        },
         rho_bound: if M::UNBOUNDED.is_some() { f64::INFINITY } else { 1.0 },
         parts: &Self::PARTS,
         integral: match M::UNBOUNDED {
             Some(why) => Integral::Unbounded(why),
-            None => Integral::Slopes(&Self::SLOPES),
+            None => match &Self::SLOPES {
+                Some(slopes) => Integral::Slopes(slopes),
+                None => Integral::Mapped(Self::MAP),
+            },
         },
         value_f32: N::VALUE_F32,
         lobe: Self::lobe,
@@ -185,25 +197,47 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
     const REFERENCE: reference::Microfacet =
         reference::Microfacet { ndf: N::REFERENCE, masking: M::REFERENCE, fresnel: F::REFERENCE };
 
-    const SLOPES: Slopes = Slopes {
-        coarse: SlopeMap {
-            part: N::COARSE,
-            end: N::coarse_end,
-            integrand: |r, azimuth, mu_e, s| Self::integrand(N::coarse_map(r, s), azimuth, mu_e, s),
-        },
-        fine: SlopeMap {
-            part: N::FINE,
-            end: N::fine_end,
-            integrand: |r, azimuth, mu_e, s| Self::integrand(N::fine_map(r, s), azimuth, mu_e, s),
-        },
-        counts: Self::counts,
-        branches: if F::POLYNOMIAL { N::BRANCHES } else { None },
-        mirror_limit: |mu_e, s| F::fresnel(mu_e, 1.0 - mu_e, s).map(|f| f * M::mirror(mu_e)),
-        sampling: match N::SAMPLES {
-            Some(part) => Some(Sampling { part, ndf: N::by_ndf::<M, F>, vndf: N::by_vndf::<M, F> }),
-            None => None,
-        },
+    const SLOPES: Option<Slopes> = match N::MAPS {
+        Some([coarse, fine]) if !M::OF_NORMAL => Some(Self::slopes(coarse, fine)),
+        _ => None,
     };
+
+    const MAP: mapped::Map = mapped::Map {
+        samples: |fixed, s, tolerance| {
+            half_vector::samples::<N, M>(fixed.mu, s, Self::counts(fixed.mu, s, tolerance), tolerance)
+        },
+        most: |s, tolerance| {
+            let cost = |mu| half_vector::most::<M>(Self::counts(mu, s, tolerance));
+            [1.0, 0.3, 0.1, 0.03, 1e-2, 1e-3, 1e-4, MU_MIN].map(cost).into_iter().max().unwrap_or(1)
+        },
+        limit: if N::IS_MIRROR_AT_0 { Some(Self::mirror_limit) } else { None },
+    };
+
+    const fn slopes(coarse: Part, fine: Part) -> Slopes {
+        Slopes {
+            coarse: SlopeMap {
+                part: coarse,
+                end: N::coarse_end,
+                integrand: |r, azimuth, mu_e, s| Self::integrand(N::coarse_map(r, s), azimuth, mu_e, s),
+            },
+            fine: SlopeMap {
+                part: fine,
+                end: N::fine_end,
+                integrand: |r, azimuth, mu_e, s| Self::integrand(N::fine_map(r, s), azimuth, mu_e, s),
+            },
+            counts: Self::counts,
+            branches: if F::POLYNOMIAL { N::BRANCHES } else { None },
+            mirror_limit: Self::mirror_limit,
+            sampling: match N::SAMPLES {
+                Some(part) => Some(Sampling { part, ndf: N::by_ndf::<M, F>, vndf: N::by_vndf::<M, F> }),
+                None => None,
+            },
+        }
+    }
+
+    fn mirror_limit(mu: f64, s: &Setting) -> [f64; 2] {
+        F::fresnel(mu, 1.0 - mu, s).map(|f| f * M::mirror(mu))
+    }
 
     /// The NDF's error model is for correlated Smith and Schlick.
     fn counts(mu: f64, s: &Setting, tolerance: f64) -> [SlopeCounts; 2] {
@@ -213,7 +247,8 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
 
     fn lobe(p: &Pair, a: &Azimuth, setting: &Setting) -> [f64; 2] {
         let h = Half::new(p, a);
-        let s = N::ndf(&h, p.hz2, setting) * M::visibility::<N>(p.mu_i, p.mu_e, setting);
+        let shared = M::visibility::<N>(p.mu_i, p.mu_e, setting);
+        let s = N::ndf(&h, p.hz2, setting) * M::of_normal(shared, p, &h);
         F::fresnel(h.c, h.one_minus_c, setting).map(|f| f * s)
     }
 

@@ -6,6 +6,7 @@
 
 mod diffuse;
 mod fresnel;
+mod half_vector;
 mod masking;
 mod microfacet;
 mod mirror;
@@ -17,6 +18,7 @@ pub use microfacet::{FRESNELS, MASKINGS, MICROFACETS, MIRRORS, Microfacet};
 pub use shape::{Parameter, Shape};
 
 use crate::error::{Error, Result};
+use crate::mapped::Map;
 use crate::pair::{Azimuth, Pair};
 use crate::reference::Reference;
 use crate::setting::{Parameters, Setting};
@@ -112,6 +114,8 @@ pub enum Integral {
     /// The same where f is smooth but for kinks at θe = θi, and where ωi and ωe are perpendicular in azimuth:
     /// panels end there. How many of each in each of the two panels of θe, and of δφ ∈ [0, π].
     Kinked(fn(tolerance: f64) -> [usize; 2]),
+    /// By directions that the host finds, each texel its own: for any lobe, wherever it lives.
+    Mapped(Map),
     /// In closed form: (A, B) of ρ(μ). Such a model is a delta and has no values.
     Delta(fn(mu: f64, &Setting) -> [f64; 2]),
     /// Not at all, and why: ρ has no bound, so that no absolute tolerance holds. Such a model has values

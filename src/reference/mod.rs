@@ -32,6 +32,7 @@ pub(crate) use fresnel::{
 };
 pub(crate) use masking::{
     Masking,
+    kelemen::Kelemen,
     none::Unmasked,
     schlick_ggx::{SchlickGgx, SchlickGgxDirect},
     smith_correlated::SmithCorrelated,

@@ -1,5 +1,6 @@
 //! Masking and shadowing of microfacets.
 
+pub(crate) mod kelemen;
 pub(crate) mod none;
 mod schlick;
 pub(crate) mod schlick_ggx;
@@ -9,6 +10,7 @@ pub(crate) mod smith_separable;
 
 use super::ndf::Ndf;
 use super::{SlopeCounts, Term};
+use crate::pair::{Half, Pair};
 use crate::reference;
 use crate::setting::Setting;
 
@@ -25,11 +27,32 @@ pub(crate) trait Masking {
         correlated
     }
 
-    /// G2 / (4 μi μe)
+    /// Whether G2 depends on ωm, and the kernel that integrates in slopes cannot have it.
+    const OF_NORMAL: bool = false;
+
+    /// tan θm, ascending, at which G2 has a kink or turns, for c = tan θe cos φ with φ the azimuth of ωm from that of
+    /// ωe: panels of an integral by directions end there.
+    fn breaks(_c: f64, _mu_e: f64) -> Vec<f64> {
+        Vec::new()
+    }
+    /// At most so many of them.
+    const MOST_BREAKS: usize = 0;
+
+    /// n, where directions are taken at r = xⁿ so that they crowd at θm = 0: G2 turns there on the scale of μe.
+    const GRADE: i32 = 1;
+
+    /// G2 / (4 μi μe), or what of it all azimuths share.
     fn visibility<N: Ndf>(mu_i: f64, mu_e: f64, s: &Setting) -> f64;
 
-    /// G2 = 2 μe x / masking(x, y), for μi = μe x/y.
-    fn masking<N: Ndf>(x: f64, y: f64, mu_e: f64, s: &Setting) -> f64;
+    /// G2 / (4 μi μe), of the microfacet and in proportion to that share.
+    fn of_normal(shared: f64, _p: &Pair, _h: &Half) -> f64 {
+        shared
+    }
+
+    /// G2 = 2 μe x / masking(x, y), for μi = μe x/y, where it does not depend on ωm.
+    fn masking<N: Ndf>(_x: f64, _y: f64, _mu_e: f64, _s: &Setting) -> f64 {
+        f64::NAN
+    }
 
     /// G2 of the mirror that α → 0 tends to.
     fn mirror(_mu: f64) -> f64 {

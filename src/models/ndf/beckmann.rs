@@ -28,8 +28,7 @@ impl Ndf for Beckmann {
     };
     const REFERENCE: &'static dyn reference::Ndf = &reference::Beckmann;
     const VALUE_F32: f64 = BECKMANN_F32;
-    const COARSE: Part = part!("ndf/beckmann_coarse");
-    const FINE: Part = part!("ndf/beckmann_fine");
+    const MAPS: Option<[Part; 2]> = Some([part!("ndf/beckmann_coarse"), part!("ndf/beckmann_fine")]);
 
     fn ndf(h: &Half, hz2: f64, &Setting { alpha, .. }: &Setting) -> f64 {
         let q = (-0.5 * h.ht2 / (alpha * alpha * hz2)).exp() * (h.h2 / (alpha * hz2));
@@ -43,16 +42,8 @@ impl Ndf for Beckmann {
         mu * erf(a) + scale * (-a * a).exp() / PI.sqrt()
     }
 
-    fn smith_root_at(x: f64, y: f64, mu_e: f64, s: &Setting) -> f64 {
-        y * Self::smith_root((mu_e * x / y).clamp(0.0, 1.0), s)
-    }
-
     fn coarse_end(t_max: f64, &Setting { alpha, .. }: &Setting) -> f64 {
         (t_max / alpha).min(4.3)
-    }
-
-    fn coarse_map(r: f64, s: &Setting) -> Map {
-        map(r, s)
     }
 
     fn fine_end(t_max: f64, &Setting { alpha, .. }: &Setting) -> f64 {

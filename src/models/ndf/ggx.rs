@@ -19,8 +19,7 @@ impl Ndf for Ggx {
         part: part!("ndf/ggx"),
     };
     const REFERENCE: &'static dyn reference::Ndf = &reference::Ggx;
-    const COARSE: Part = ggx_coarse::PART;
-    const FINE: Part = ggx_fine::PART;
+    const MAPS: Option<[Part; 2]> = Some([ggx_coarse::PART, ggx_fine::PART]);
     const SAMPLES: Option<Part> = Some(ggx_samples::PART);
     /// Smith's root α² + (1 − α²) μ² vanishes at μ = ±iα/√(1 − α²), and the map ends at its own branch point,
     /// α = ±i t_max, at μ = ±2iα/(1 − α²). Measured by `print_the_error_of_spreading`: 1 is too little by a third.

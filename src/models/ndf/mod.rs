@@ -9,24 +9,33 @@ pub(crate) mod ggx_samples;
 
 use super::fresnel::Fresnel;
 use super::masking::Masking;
-use super::{Branches, Part, SlopeCounts, Term};
+use super::{Branches, Parameter, Part, Shape, SlopeCounts, Term};
 use crate::pair::Half;
 use crate::reference;
-use crate::setting::Setting;
+use crate::setting::{Parameters, Setting};
 
 /// A distribution of normals, with the maps that integrate and sample it.
 pub(crate) trait Ndf {
     const TERM: Term;
     const REFERENCE: &'static dyn reference::Ndf;
-    /// The shaders of its maps.
-    const COARSE: Part;
-    const FINE: Part;
+    /// The shaders of its maps, the coarse one first, for the kernel that integrates in slopes: without, the host finds
+    /// directions by the fine map.
+    const MAPS: Option<[Part; 2]> = None;
     /// Its samplers, if it has them.
     const SAMPLES: Option<Part> = None;
+    /// What its roughness is.
+    const SHAPE: Shape = Shape::ALPHA;
+    /// The rest of its parameters, in places 0 to 3.
+    const PARAMETERS: &'static [Parameter] = &[];
+    /// Whether shape 0 is the ideal mirror.
+    const IS_MIRROR_AT_0: bool = true;
     /// The relative error of its values in f32.
     const VALUE_F32: f64 = crate::plan::VALUE_F32;
     /// Where ρ(μ, α) is not analytic, if that was measured.
     const BRANCHES: Option<Branches> = None;
+
+    /// Adds what its shader takes beside its parameters, or in place of them.
+    fn derive(_parameters: &mut Parameters) {}
 
     /// D(ωm), sr⁻¹.
     fn ndf(h: &Half, hz2: f64, s: &Setting) -> f64;
@@ -35,13 +44,20 @@ pub(crate) trait Ndf {
     fn smith_root(mu: f64, s: &Setting) -> f64;
 
     /// y (1 + 2Λ) μi at μi = μe x/y.
-    fn smith_root_at(x: f64, y: f64, mu_e: f64, s: &Setting) -> f64;
+    fn smith_root_at(x: f64, y: f64, mu_e: f64, s: &Setting) -> f64 {
+        y * Self::smith_root((mu_e * x / y).clamp(0.0, 1.0), s)
+    }
 
     /// r at which tan θm reaches `t_max`, and the map there.
-    fn coarse_end(t_max: f64, s: &Setting) -> f64;
-    fn coarse_map(r: f64, s: &Setting) -> Map;
     fn fine_end(t_max: f64, s: &Setting) -> f64;
     fn fine_map(r: f64, s: &Setting) -> Map;
+    /// The same for tolerances that f32 can meet.
+    fn coarse_end(t_max: f64, s: &Setting) -> f64 {
+        Self::fine_end(t_max, s)
+    }
+    fn coarse_map(r: f64, s: &Setting) -> Map {
+        Self::fine_map(r, s)
+    }
 
     /// What a texel takes to meet a tolerance, where cos φ > 0 and where it is < 0.
     fn counts(mu: f64, s: &Setting, tolerance: f64) -> [SlopeCounts; 2];

@@ -1,5 +1,6 @@
 //! Masking and shadowing.
 
+pub(super) mod kelemen;
 pub(super) mod none;
 pub(super) mod schlick_ggx;
 pub(super) mod smith_correlated;
@@ -11,6 +12,8 @@ pub(crate) struct Facet {
     pub mu: [f64; 2],
     /// Smith's Λ of both.
     pub lambda: [f64; 2],
+    /// ωi·ωm = ωe·ωm
+    pub cos_d: f64,
     pub alpha: f64,
 }
 
