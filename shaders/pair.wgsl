@@ -9,8 +9,10 @@ struct Pair {
     sd: real,     // sin²((θi − θe)/2)
     mu_i: real,   // cos θi
     mu_e: real,   // cos θe
-    bin: real,    // 1 / weight of this θe cell where it holds the mirror direction, else 0
+    bin: real,    // 1 / weight of this θe cell where it holds the mirror direction, else 0; of a row of values, its place
     own: real,    // α of a row of values; of an integral, the weight of this θe
+    st: real,     // (sin θi + sin θe)/2
+    dt: real,     // (sin θi − sin θe)/2
 }
 
 struct Azimuth {
@@ -19,6 +21,16 @@ struct Azimuth {
     back: real,   // max(0, −cos δ) = max(0, cos(φi − φe)): 0 unless ωe is on the side of ωi
     weight: real, // of this δφ in an integral
     bin: real,    // 1 / weight of this δφ cell where it holds δφ = 0, else 0
+    cp: real,     // (cos φi + cos φe)/2: these four are for what tells azimuths from each other
+    cm: real,     // (cos φi − cos φe)/2
+    sp: real,     // (sin φi + sin φe)/2
+    sm: real,     // (sin φi − sin φe)/2
+}
+
+/// A direction: its cosine, and the α that is seen from it.
+struct Toward {
+    mu: real,
+    alpha: real,
 }
 
 /// h = (ωi + ωe)/2, whose length is ωi·ωm.

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use serde::Serialize;
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A variable that a table can have as an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -18,11 +18,16 @@ pub enum Variable {
     ThetaE,
     /// δφ = φe − φi − π, rad; 0 is the mirror direction. Isotropic tables use [0, π].
     DeltaPhi,
+    /// φi ∈ [0, 2π], rad: azimuth of incidence from the tangent. Where an integral keeps ωe, its azimuth is φe.
+    PhiI,
+    /// φe ∈ [0, 2π], rad: azimuth of exitance from the tangent.
+    PhiE,
 }
 
 impl Variable {
     /// All variables.
-    pub const ALL: [Self; 5] = [Self::Roughness, Self::Mu, Self::ThetaI, Self::ThetaE, Self::DeltaPhi];
+    pub const ALL: [Self; 7] =
+        [Self::Roughness, Self::Mu, Self::ThetaI, Self::ThetaE, Self::DeltaPhi, Self::PhiI, Self::PhiE];
 
     /// The name in recipes, files and manifests.
     pub fn name(self) -> &'static str {
@@ -32,6 +37,8 @@ impl Variable {
             Self::ThetaI => "theta_i",
             Self::ThetaE => "theta_e",
             Self::DeltaPhi => "delta_phi",
+            Self::PhiI => "phi_i",
+            Self::PhiE => "phi_e",
         }
     }
 
@@ -43,6 +50,8 @@ impl Variable {
             Self::ThetaI => "θi",
             Self::ThetaE => "θe",
             Self::DeltaPhi => "δφ",
+            Self::PhiI => "φi",
+            Self::PhiE => "φe",
         }
     }
 
@@ -50,7 +59,7 @@ impl Variable {
     pub fn unit(self) -> &'static str {
         match self {
             Self::Roughness | Self::Mu => "1",
-            Self::ThetaI | Self::ThetaE | Self::DeltaPhi => "rad",
+            Self::ThetaI | Self::ThetaE | Self::DeltaPhi | Self::PhiI | Self::PhiE => "rad",
         }
     }
 
@@ -60,6 +69,7 @@ impl Variable {
             Self::Roughness | Self::Mu => [0.0, 1.0],
             Self::ThetaI | Self::ThetaE => [0.0, FRAC_PI_2],
             Self::DeltaPhi => [0.0, PI],
+            Self::PhiI | Self::PhiE => [0.0, TAU],
         }
     }
 
@@ -68,7 +78,7 @@ impl Variable {
     pub fn natural_positions(self) -> Positions {
         match self {
             Self::Roughness | Self::Mu => Positions::Centers,
-            Self::ThetaI | Self::ThetaE | Self::DeltaPhi => Positions::Nodes,
+            _ => Positions::Nodes,
         }
     }
 }

@@ -3,6 +3,7 @@
 use crate::axis::Variable;
 use crate::error::Result;
 use crate::plan::{Lobe, TablePlan};
+use crate::points::delta_phi;
 use crate::quantity::Evaluation;
 use crate::reference::Angles;
 use crate::table::{ErrorKind, TableError, Values, indices};
@@ -175,13 +176,20 @@ fn reference_lobe(evaluation: Evaluation, lobe: &Lobe, at: &BTreeMap<Variable, f
     let get = |variable| at.get(&variable).copied();
     let setting = &lobe.setting_at(get(Variable::Roughness));
     let theta_i = get(Variable::ThetaI).unwrap_or(0.0);
+    let phi_i = get(Variable::PhiI).unwrap_or(0.0);
     match evaluation {
         Evaluation::Value => {
             let theta_e = get(Variable::ThetaE).unwrap_or(0.0);
-            let delta_phi = get(Variable::DeltaPhi).unwrap_or(0.0);
-            reference.brdf(&Angles { theta_i, theta_e, delta_phi }, setting).unwrap_or([f64::NAN; 2])
+            let delta_phi = match get(Variable::PhiE) {
+                Some(phi_e) => delta_phi(phi_i, phi_e),
+                None => get(Variable::DeltaPhi).unwrap_or(0.0),
+            };
+            let angles = Angles { theta_i, theta_e, delta_phi, phi_i };
+            reference.brdf(&angles, setting).unwrap_or([f64::NAN; 2])
         }
-        Evaluation::Directional => reference.rho_dh(get(Variable::Mu).unwrap_or(theta_i.cos()), setting),
+        Evaluation::Directional => {
+            reference.rho_dh_at(get(Variable::Mu).unwrap_or(theta_i.cos()), phi_i, setting)
+        }
         Evaluation::Hemispherical => reference.rho_hh(setting),
     }
 }

@@ -19,9 +19,9 @@ pub(crate) fn evaluate<E: Send>(
     for lobe in &table.lobes {
         let work = Work::new(table, lobe);
         match &work.kind {
-            WorkKind::Values { pairs, azimuths } => {
-                let rows = work.alphas.len() * pairs.len();
-                sums.par_chunks_mut(azimuths.len() * channels).enumerate().try_for_each(|(row, out)| {
+            WorkKind::Values(values) => {
+                let rows = work.alphas.len() * values.rows();
+                sums.par_chunks_mut(values.columns() * channels).enumerate().try_for_each(|(row, out)| {
                     add_row(out, lobe, &work, row);
                     tick(share / rows as f64)
                 })?;
@@ -82,8 +82,9 @@ pub(crate) fn stream(
 }
 
 fn add_row(out: &mut [f64], lobe: &Lobe, work: &Work, row: usize) {
-    let WorkKind::Values { pairs, azimuths } = &work.kind else { return };
-    let (setting, pair) = (lobe.setting(work.alphas[row / pairs.len()]), &pairs[row % pairs.len()]);
+    let WorkKind::Values(values) = &work.kind else { return };
+    let setting = lobe.setting(work.alphas[row / values.rows()]);
+    let (pair, azimuths) = values.row(row % values.rows());
     for (azimuth, out) in azimuths.iter().zip(out.chunks_mut(lobe.weights.len())) {
         add(out, lobe, (lobe.model.lobe)(pair, azimuth, &setting));
     }

@@ -1,7 +1,7 @@
 //! Integrals by directions that the host finds, each texel its own: whatever a lobe's shape, its model says where it
 //! lives. For models that no kernel with a map of its own is worth: a direction takes 100 ns here.
 
-use crate::pair::{Azimuth, Pair};
+use crate::pair::{Azimuth, Frame, Pair};
 use crate::setting::Setting;
 use rayon::prelude::*;
 
@@ -12,8 +12,8 @@ pub struct Map {
     pub samples: fn(&Fixed, &Setting, tolerance: f64) -> Vec<Sample>,
     /// At most so many of them.
     pub most: fn(&Setting, tolerance: f64) -> usize,
-    /// What measure 0 tends to, where the lobe becomes a delta.
-    pub limit: Option<fn(mu: f64, &Setting) -> [f64; 2]>,
+    /// ρ in closed form where the lobe is a delta.
+    pub limit: fn(mu: f64, &Setting) -> Option<[f64; 2]>,
 }
 
 /// The direction that an integral leaves alone.
@@ -21,6 +21,8 @@ pub struct Map {
 pub struct Fixed {
     /// cos θ ≥ 2⁻²⁴
     pub mu: f64,
+    /// φ, rad: what an isotropic lobe does not tell.
+    pub phi: f64,
 }
 
 /// A direction of the integral: f there, times a weight that has its cosine and its solid angle.
@@ -32,7 +34,7 @@ pub struct Sample {
 }
 
 /// Numbers of a sample.
-pub(crate) const POINT: usize = 10;
+pub(crate) const POINT: usize = 16;
 
 /// Inner integrals for each (setting, fixed direction).
 #[derive(Clone)]
@@ -57,9 +59,9 @@ impl MappedWork {
     /// The result `at`, counting fixed directions first.
     pub fn texel(&self, at: usize) -> Texel {
         let (setting, fixed) = (&self.settings[at / self.fixed.len()], &self.fixed[at % self.fixed.len()]);
-        match self.map.limit {
-            Some(limit) if setting.alpha == 0.0 => Texel::Limit(limit(fixed.mu, setting)),
-            _ => Texel::Samples((self.map.samples)(fixed, setting, self.tolerance)),
+        match (self.map.limit)(fixed.mu, setting) {
+            Some(limit) => Texel::Limit(limit),
+            None => Texel::Samples((self.map.samples)(fixed, setting, self.tolerance)),
         }
     }
 
@@ -82,7 +84,8 @@ impl Sample {
 
     /// As the shader lays it out.
     pub(crate) fn to_array(self) -> [f64; POINT] {
-        let Self { pair: Pair { hz2, dt2, ss, sd, mu_i, mu_e, .. }, azimuth, weight } = self;
-        [hz2, dt2, ss, sd, mu_i, mu_e, azimuth.sin2, azimuth.cos2, azimuth.back, weight]
+        let Self { pair: Pair { hz2, dt2, ss, sd, mu_i, mu_e, st, dt, .. }, azimuth, weight } = self;
+        let Azimuth { sin2, cos2, back, frame: Frame { cp, cm, sp, sm }, .. } = azimuth;
+        [hz2, dt2, ss, sd, mu_i, mu_e, sin2, cos2, back, weight, st, dt, cp, cm, sp, sm]
     }
 }

@@ -27,9 +27,13 @@ pub struct Pair {
     pub bin: f64,
     /// The weight of this θe in an integral whose directions have nodes of their own, else 1.
     pub weight: f64,
+    /// (sin θi + sin θe)/2
+    pub st: f64,
+    /// (sin θi − sin θe)/2
+    pub dt: f64,
 }
 
-/// What depends on δφ alone.
+/// What depends on δφ alone; and, for what tells azimuths from each other, on φi.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Azimuth {
     /// sin²(δ/2)
@@ -43,14 +47,41 @@ pub struct Azimuth {
     pub weight: f64,
     /// 1 / weight of this δφ cell where it holds δφ = 0, else 0.
     pub bin: f64,
+    /// (cos φi ± cos φe)/2 and (sin φi ± sin φe)/2, the sums first.
+    pub frame: Frame,
+}
+
+/// Means and half differences of the azimuths' cosines and sines. The tangential half vector is
+/// (st cp + dt cm, st sp + dt sm): what vanishes in the mirror direction, cp, sp and dt, is right to its last digits.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frame {
+    /// (cos φi + cos φe)/2
+    pub cp: f64,
+    /// (cos φi − cos φe)/2
+    pub cm: f64,
+    /// (sin φi + sin φe)/2
+    pub sp: f64,
+    /// (sin φi − sin φe)/2
+    pub sm: f64,
 }
 
 /// What depends on all three: of h = (ωi + ωe)/2, |h|² and its tangential part; ωi·ωm = |h|, and 1 − ωi·ωm.
+#[derive(Clone, Copy)]
 pub(crate) struct Half {
     pub ht2: f64,
     pub h2: f64,
     pub c: f64,
     pub one_minus_c: f64,
+}
+
+impl Half {
+    /// As if it were seen through a stretch of the tangent plane by √(αy/αx) and its inverse: D of unequal α is then that
+    /// of equal ones, √(αx αy).
+    pub(crate) fn stretched(self, p: &Pair, a: &Azimuth, [alpha_x, alpha_y]: [f64; 2]) -> Self {
+        let Frame { cp, cm, sp, sm } = a.frame;
+        let (x, y) = (p.st * cp + p.dt * cm, p.st * sp + p.dt * sm);
+        Self { ht2: x * x * (alpha_y / alpha_x) + y * y * (alpha_x / alpha_y), ..self }
+    }
 }
 
 impl Pair {
@@ -69,6 +100,8 @@ impl Pair {
             mu_e: theta_e.cos(),
             bin: 0.0,
             weight: 1.0,
+            st: half_sum.sin() * half_difference.cos(),
+            dt,
         }
     }
 }
@@ -90,26 +123,38 @@ impl Pair {
             mu_e,
             bin: 0.0,
             weight: 1.0,
+            st: 0.5 * sum,
+            dt,
         }
     }
 
     /// As the shader lays it out.
-    pub(crate) fn to_array(self) -> [f64; 8] {
-        [self.hz2, self.dt2, self.ss, self.sd, self.mu_i, self.mu_e, self.bin, self.weight]
+    pub(crate) fn to_array(self) -> [f64; 10] {
+        let Self { hz2, dt2, ss, sd, mu_i, mu_e, bin, weight, st, dt } = self;
+        [hz2, dt2, ss, sd, mu_i, mu_e, bin, weight, st, dt]
     }
 }
 
 impl Azimuth {
     /// As the shader lays it out.
-    pub(crate) fn to_array(self) -> [f64; 5] {
-        [self.sin2, self.cos2, self.back, self.weight, self.bin]
+    pub(crate) fn to_array(self) -> [f64; 9] {
+        let Self { sin2, cos2, back, weight, bin, frame: Frame { cp, cm, sp, sm } } = self;
+        [sin2, cos2, back, weight, bin, cp, cm, sp, sm]
     }
 
-    /// The factors of δφ, rad.
+    /// The factors of δφ, rad, at φi = 0.
     pub fn new(delta_phi: f64) -> Self {
+        Self::at(0.0, delta_phi)
+    }
+
+    /// The factors of φi and δφ, rad.
+    pub fn at(phi_i: f64, delta_phi: f64) -> Self {
         let (sin, cos) = (0.5 * delta_phi).sin_cos();
         let back = (-delta_phi.cos()).max(0.0);
-        Self { sin2: sin * sin, cos2: cos * cos, back, weight: 0.0, bin: 0.0 }
+        // φe = φi + π + δφ; sums and differences as products.
+        let (sin_mid, cos_mid) = (phi_i + 0.5 * delta_phi).sin_cos();
+        let frame = Frame { cp: sin_mid * sin, cm: cos_mid * cos, sp: -cos_mid * sin, sm: sin_mid * cos };
+        Self { sin2: sin * sin, cos2: cos * cos, back, weight: 0.0, bin: 0.0, frame }
     }
 }
 

@@ -274,8 +274,11 @@ impl TablePlan {
         let refuse = |why: String| Err(Error::input(format!("table \"{}\": {why}", self.name)));
         let variables: Vec<_> = self.axes.iter().map(|axis| axis.variable).collect();
         let swept = variables.first() == Some(&Variable::Roughness);
-        if variables[usize::from(swept)..] != *self.quantity.variables {
-            let names: Vec<_> = self.quantity.variables.iter().map(|v| v.name()).collect();
+        let anisotropic = self.lobes.iter().any(|lobe| lobe.model.is_anisotropic());
+        let given = &variables[usize::from(swept)..];
+        let wanted = self.quantity.variables(anisotropic || given.contains(&Variable::PhiI));
+        if given != wanted {
+            let names: Vec<_> = wanted.iter().map(|v| v.name()).collect();
             return refuse(format!(
                 "{} runs over ({}), after roughness if that is an axis",
                 self.quantity.name,
@@ -375,8 +378,10 @@ impl TablePlan {
                 Integral::Delta(_) => matches!(self.rule, Rule::Warped | Rule::Grid { .. }),
                 Integral::Unbounded(_) => self.quantity.evaluation == Evaluation::Value,
             };
+            let fits = fits && (!model.is_anisotropic() || self.rule == Rule::Warped);
             if !fits {
                 let what = match model.integral {
+                    _ if model.is_anisotropic() => "anisotropic",
                     Integral::Delta(_) => "a delta",
                     Integral::Slopes(_) | Integral::Mapped(_) => "a lobe without samplers",
                     _ => "no microfacet lobe",
@@ -400,21 +405,42 @@ impl TablePlan {
             Evaluation::Value => {
                 count(self.axis(Variable::ThetaI)).saturating_mul(count(self.axis(Variable::ThetaE)))
             }
-            Evaluation::Directional => count(self.axes.last()).saturating_mul(nodes),
+            Evaluation::Directional => {
+                let azimuths = count(self.axis(Variable::PhiI));
+                let fixed = self.axis(Variable::Mu).or_else(|| self.axis(Variable::ThetaI));
+                count(fixed).saturating_mul(azimuths).saturating_mul(nodes)
+            }
             Evaluation::Hemispherical => NODES.saturating_mul(nodes),
         }
     }
 
     /// The relative error of its values in f32: that of its lobes' models.
     pub(crate) fn value_f32(&self) -> f64 {
-        self.lobes.iter().map(|lobe| lobe.model.value_f32).fold(VALUE_F32, f64::max)
+        let at = |lobe: &Lobe| {
+            let settings = lobe.settings(&self.alphas(lobe));
+            settings.iter().map(|s| lobe.model.value_f32_at(s)).fold(VALUE_F32, f64::max)
+        };
+        self.lobes.iter().map(at).fold(VALUE_F32, f64::max)
+    }
+
+    /// The least tolerance of its integrals in f32. Where α differ by a ratio, values are off by it where the half vector
+    /// is near the larger one's axis, which is little of an integral until the ratio is above a hundred: measured.
+    fn integral_f32(&self) -> f64 {
+        let worse = |lobe: &Lobe| {
+            let settings = lobe.settings(&self.alphas(lobe));
+            let most = settings.iter().map(|s| lobe.model.value_f32_at(s)).fold(0.0, f64::max);
+            most / lobe.model.value_f32 / 20.0
+        };
+        INTEGRAL_F32 * self.lobes.iter().map(worse).fold(1.0, f64::max)
     }
 
     /// The least arithmetic that meets the tolerance: f32 has a floor, of some hundred roundings in an
     /// integral and of [`VALUE_F32`] in a value.
     pub fn precision(&self) -> Precision {
-        let floor =
-            if self.quantity.evaluation == Evaluation::Value { self.value_f32() } else { INTEGRAL_F32 };
+        let floor = match self.quantity.evaluation {
+            Evaluation::Value => self.value_f32(),
+            _ => self.integral_f32(),
+        };
         if self.tolerance < floor { Precision::F64 } else { Precision::F32 }
     }
 

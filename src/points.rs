@@ -50,20 +50,7 @@ impl Angles {
     /// φe − φi is kept with what its rounding drops, and the nearest odd multiple of π, π in two parts,
     /// taken from it without rounding: near the mirror direction nothing is lost.
     pub fn delta_phi(&self) -> f64 {
-        let (a, b) = (self.phi_e, -self.phi_i);
-        let sum = a + b;
-        let b_part = sum - a;
-        let dropped = (a - (sum - b_part)) + (b - b_part); // Knuth's TwoSum
-        let turns = 2.0 * ((sum - PI) / TAU).round() + 1.0;
-        let delta = (-turns).mul_add(PI, sum) + (dropped - turns * PI_REST);
-        // The number of turns is rounded too.
-        if delta > PI {
-            delta - TAU
-        } else if delta < -PI {
-            delta + TAU
-        } else {
-            delta
-        }
+        delta_phi(self.phi_i, self.phi_e)
     }
 
     /// Whether these are directions.
@@ -90,7 +77,25 @@ impl Angles {
 
     /// The factors that everything is made of.
     pub(crate) fn factors(&self) -> (Pair, Azimuth) {
-        (Pair::new(self.theta_i, self.theta_e), Azimuth::new(self.delta_phi()))
+        (Pair::new(self.theta_i, self.theta_e), Azimuth::at(self.phi_i, self.delta_phi()))
+    }
+}
+
+/// φe − φi − π in (−π, π], as [`Angles::delta_phi`].
+pub(crate) fn delta_phi(phi_i: f64, phi_e: f64) -> f64 {
+    let (a, b) = (phi_e, -phi_i);
+    let sum = a + b;
+    let b_part = sum - a;
+    let dropped = (a - (sum - b_part)) + (b - b_part); // Knuth's TwoSum
+    let turns = 2.0 * ((sum - PI) / TAU).round() + 1.0;
+    let delta = (-turns).mul_add(PI, sum) + (dropped - turns * PI_REST);
+    // The number of turns is rounded too.
+    if delta > PI {
+        delta - TAU
+    } else if delta < -PI {
+        delta + TAU
+    } else {
+        delta
     }
 }
 

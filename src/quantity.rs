@@ -17,10 +17,19 @@ pub struct Quantity {
     pub summary: &'static str,
     /// The directions it runs over, slowest first; a subject's roughness comes before them.
     pub variables: &'static [Variable],
+    /// The same where a lobe tells azimuths from each other.
+    pub about: &'static [Variable],
     /// How errors are counted.
     pub error: ErrorKind,
     /// How it follows from f.
     pub evaluation: Evaluation,
+}
+
+impl Quantity {
+    /// The directions it runs over, of subjects that tell azimuths from each other or not.
+    pub fn variables(&self, anisotropic: bool) -> &'static [Variable] {
+        if anisotropic { self.about } else { self.variables }
+    }
 }
 
 /// How a quantity follows from a BRDF.
@@ -41,6 +50,7 @@ pub static BRDF: Quantity = Quantity {
     unit: "sr⁻¹",
     summary: "the BRDF, without the cosine",
     variables: &[Variable::ThetaI, Variable::ThetaE, Variable::DeltaPhi],
+    about: &[Variable::ThetaI, Variable::PhiI, Variable::ThetaE, Variable::PhiE],
     error: ErrorKind::Relative,
     evaluation: Evaluation::Value,
 };
@@ -52,6 +62,7 @@ pub static RHO_DH: Quantity = Quantity {
     unit: "1",
     summary: "directional-hemispherical reflectance",
     variables: &[Variable::ThetaI],
+    about: &[Variable::ThetaI, Variable::PhiI],
     error: ErrorKind::Absolute,
     evaluation: Evaluation::Directional,
 };
@@ -63,6 +74,7 @@ pub static RHO_HH: Quantity = Quantity {
     unit: "1",
     summary: "hemispherical-hemispherical reflectance, the cosine-weighted mean of rho_dh",
     variables: &[],
+    about: &[],
     error: ErrorKind::Absolute,
     evaluation: Evaluation::Hemispherical,
 };
@@ -74,6 +86,7 @@ pub static SPLIT_SUM: Quantity = Quantity {
     unit: "1",
     summary: "the split sum (DFG) terms: F0·A + F90·B reflects",
     variables: &[Variable::Mu],
+    about: &[Variable::Mu, Variable::PhiI],
     error: ErrorKind::Absolute,
     evaluation: Evaluation::Directional,
 };

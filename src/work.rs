@@ -6,6 +6,7 @@ use crate::mapped::{Fixed, MappedWork};
 use crate::models::{Integral, Sampling, Slopes, decade};
 use crate::pair::{Azimuth, MU_MIN, Pair, off_horizon};
 use crate::plan::{Lobe, Rule, TablePlan};
+use crate::points::delta_phi;
 use crate::quadrature::{Node, gauss_legendre, midpoint};
 use crate::quantity::Evaluation;
 use crate::sampling::{SampleWork, Sampler};
@@ -23,12 +24,40 @@ pub(crate) struct Work {
 }
 
 pub(crate) enum WorkKind {
-    /// A row of values for each (α, pair): one value an azimuth.
-    Values { pairs: Vec<Pair>, azimuths: Vec<Azimuth> },
+    /// A row of values for each (α, θi, φi, θe): one value an azimuth of ωe.
+    Values(ValueWork),
     /// For each (α, k) a raw integral. They become texels by matrices one after the other, each of which
     /// transposes: by one row of weights, where each texel has integrals of its own, or else by two matrices,
     /// which spread those at the sources of a table over it.
     Integrals { inner: Inner, outer: Vec<Matrix> },
+}
+
+/// Values at all combinations of angles.
+pub(crate) struct ValueWork {
+    /// Of each θi with each θe, which turns fastest.
+    pub pairs: Vec<Pair>,
+    pub thetas_e: usize,
+    /// For each φi the azimuths of ωe; where a table has δφ, it is the only one.
+    pub frames: Vec<Vec<Azimuth>>,
+}
+
+impl ValueWork {
+    /// Values of a row.
+    pub fn columns(&self) -> usize {
+        self.frames[0].len()
+    }
+
+    /// Rows of an α.
+    pub fn rows(&self) -> usize {
+        self.pairs.len() * self.frames.len()
+    }
+
+    /// The pair and the azimuths of a row of an α.
+    pub fn row(&self, row: usize) -> (&Pair, &[Azimuth]) {
+        let (outer, theta_e) = (row / self.thetas_e, row % self.thetas_e);
+        let (theta_i, frame) = (outer / self.frames.len(), outer % self.frames.len());
+        (&self.pairs[theta_i * self.thetas_e + theta_e], &self.frames[frame])
+    }
 }
 
 /// The inner integrals: one result for each (α, k), k counting directions and outer nodes.
@@ -71,7 +100,16 @@ impl Work {
                         nodes.iter().map(|n| 4.0 * n.x.powi(3) * n.weight).collect(),
                     ],
                 };
-                integrals(table, lobe, alphas, &thetas, &weights)
+                // The mean over a quarter of a turn, which the others mirror.
+                let azimuths = match lobe.model.is_anisotropic() {
+                    true => gauss_legendre(MEAN_NODES[decade(table.rule_tolerance())]),
+                    false => vec![Node { x: 0.0, weight: 1.0 }],
+                };
+                let of = |k: usize| azimuths.iter().map(move |azimuth| (k, azimuth));
+                let all = || (0..thetas.len()).flat_map(of);
+                let fixed: Vec<_> = all().map(|(k, azimuth)| [thetas[k], FRAC_PI_2 * azimuth.x]).collect();
+                let weights: Vec<_> = all().map(|(k, azimuth)| weights[k] * azimuth.weight).collect();
+                integrals(table, lobe, alphas, &fixed, &weights)
             }
         }
     }
@@ -94,7 +132,7 @@ impl Work {
     pub fn evaluations(&self) -> u64 {
         let rows = self.alphas.len();
         let count = match &self.kind {
-            WorkKind::Values { pairs, azimuths } => rows * pairs.len() * azimuths.len(),
+            WorkKind::Values(work) => rows * work.rows() * work.columns(),
             WorkKind::Integrals { inner: Inner::Slopes(work), .. } => work.evaluations(rows),
             WorkKind::Integrals { inner, .. } => rows * inner.count() * inner.cost(),
         };
@@ -126,25 +164,35 @@ impl Inner {
     }
 }
 
-/// θ of the fixed direction along the table's last axis.
-fn directions(table: &TablePlan) -> Vec<f64> {
-    let axis = &table.axes[table.axes.len() - 1];
-    match axis.variable {
-        Variable::Mu => axis.values.iter().map(|mu| mu.acos()).collect(),
-        _ => axis.values.clone(),
-    }
+/// (θ, φ) of the fixed direction along the table's last axes.
+fn directions(table: &TablePlan) -> Vec<[f64; 2]> {
+    let thetas: Vec<_> = match table.axis(Variable::Mu) {
+        Some(axis) => axis.values.iter().map(|mu| mu.acos()).collect(),
+        None => table.axis(Variable::ThetaI).map_or(Vec::new(), |axis| axis.values.clone()),
+    };
+    let phis = table.axis(Variable::PhiI).map_or(&[0.0][..], |axis| &axis.values);
+    thetas.into_iter().flat_map(|theta| phis.iter().map(move |&phi| [theta, phi])).collect()
 }
 
 fn values(table: &TablePlan) -> WorkKind {
     let of = |variable| table.axis(variable).map_or(&[][..], |axis| &axis.values);
     let (theta_i, theta_e) = (of(Variable::ThetaI), of(Variable::ThetaE));
     let pairs = theta_i.iter().flat_map(|&i| theta_e.iter().map(move |&e| Pair::new(i, e))).collect();
-    WorkKind::Values { pairs, azimuths: of(Variable::DeltaPhi).iter().map(|&d| Azimuth::new(d)).collect() }
+    let frames = match table.axis(Variable::PhiI) {
+        None => vec![of(Variable::DeltaPhi).iter().map(|&delta| Azimuth::new(delta)).collect()],
+        Some(phi_i) => {
+            let azimuth = |phi_i, phi_e| Azimuth::at(phi_i, delta_phi(phi_i, phi_e));
+            let frame = |&i: &f64| of(Variable::PhiE).iter().map(|&e| azimuth(i, e)).collect();
+            phi_i.values.iter().map(frame).collect()
+        }
+    };
+    WorkKind::Values(ValueWork { pairs, thetas_e: theta_e.len(), frames })
 }
 
-/// Integrals over one direction for each fixed θ, times `weights`, which run over the fixed ones
+/// Integrals over one direction for each fixed (θ, φ), times `weights`, which run over the fixed ones
 /// where a texel sums several (ρ_hh), and are just 1 where each is a texel.
-fn integrals(table: &TablePlan, lobe: &Lobe, alphas: Vec<f64>, thetas: &[f64], weights: &[f64]) -> Work {
+fn integrals(table: &TablePlan, lobe: &Lobe, alphas: Vec<f64>, fixed: &[[f64; 2]], weights: &[f64]) -> Work {
+    let thetas: &Vec<_> = &fixed.iter().map(|[theta, _]| *theta).collect();
     let of = |inner: Inner, outer: Vec<f64>| WorkKind::Integrals { inner, outer: vec![Matrix::row(outer)] };
     let smooth = |grid: Vec<Cell>, azimuths: Vec<Azimuth>| {
         let pairs = thetas.iter().flat_map(|&theta| grid.iter().map(move |cell| cell.pair(theta))).collect();
@@ -193,7 +241,7 @@ fn integrals(table: &TablePlan, lobe: &Lobe, alphas: Vec<f64>, thetas: &[f64], w
             return slopes_work(table, lobe, slopes, [alphas, mus()], weights);
         }
         (_, Integral::Mapped(map)) => {
-            let fixed = mus().into_iter().map(|mu| Fixed { mu }).collect();
+            let fixed = mus().into_iter().zip(fixed).map(|(mu, &[_, phi])| Fixed { mu, phi }).collect();
             let work = MappedWork::new(map, fixed, lobe.settings(&alphas), table.rule_tolerance());
             of(Inner::Mapped(work), weights.to_vec())
         }
@@ -230,7 +278,8 @@ fn slopes_work(
         Work { alphas, kind: WorkKind::Integrals { inner, outer } }
     };
     let direct = |alphas, mus| work(alphas, mus, vec![Matrix::row(weights.to_vec())]);
-    let enough = alphas.len().saturating_mul(mus.len()) >= FEWEST;
+    // Azimuths repeat the μ of lobes that do not tell them.
+    let enough = table.axis(Variable::PhiI).is_none() && alphas.len().saturating_mul(mus.len()) >= FEWEST;
     let Some(branches) = slopes.branches.filter(|_| enough) else { return direct(alphas, mus) };
     let rows = Spread::along_roughness(&alphas, &mus, branches, tolerance);
     if weights.len() > 1 {

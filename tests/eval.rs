@@ -144,7 +144,12 @@ fn a_millionth_of_a_radian_from_the_mirror_is_seen() {
             assert!(alpha > 2e-6 || (beside / 0.64 - 1.0).abs() < 0.01, "a millionth is lost: {beside}");
             for (pair, value) in angles.iter().zip(values.chunks_exact(2)) {
                 let delta_phi = exact_delta_phi(pair);
-                let at = reference::Angles { theta_i: pair.theta_i, theta_e: pair.theta_e, delta_phi };
+                let at = reference::Angles {
+                    theta_i: pair.theta_i,
+                    theta_e: pair.theta_e,
+                    delta_phi,
+                    phi_i: pair.phi_i,
+                };
                 let truth = reference::GGX.brdf(&at, &alpha.into()).unwrap();
                 for (value, truth) in value.iter().zip(truth) {
                     let error = (f64::from(*value) - truth).abs() / truth.max(1e-30);

@@ -1,5 +1,5 @@
 // Hemispherical integrals by directions that the host found: one invocation a result, which sums its own in
-// blocks, so that rounding grows with the root of their number.
+// blocks of blocks, so that rounding grows with the cube root of their number.
 // Some drivers stop long loops: `src/gpu/loops.rs` counts these before they are run.
 
 @group(0) @binding(2) var<storage, read> alphas: array<real>;
@@ -17,14 +17,19 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let alpha = alphas[invocation / job.columns];
     let range = ranges[invocation - job.first];
     var sum = limits[invocation - job.first];
-    for (var block = range.x; block < range.y; block += BLOCK) {
-        var inner = real2();
-        for (var k = block; k < min(block + BLOCK, range.y); k++) {
-            let point = points[k];
-            let pair = pair_of(point);
-            inner += point.weight * lobe(pair, azimuth_of(point), alpha, lobe_row(pair, alpha));
+    for (var outer = range.x; outer < range.y; outer += BLOCK * BLOCK) {
+        var middle = real2();
+        let end = min(outer + BLOCK * BLOCK, range.y);
+        for (var block = outer; block < end; block += BLOCK) {
+            var inner = real2();
+            for (var k = block; k < min(block + BLOCK, end); k++) {
+                let point = points[k];
+                let pair = pair_of(point);
+                inner += point.weight * lobe(pair, azimuth_of(point), alpha, lobe_row(pair, alpha));
+            }
+            middle += inner;
         }
-        sum += inner;
+        sum += middle;
     }
     write(invocation - job.base, sum);
 }

@@ -11,12 +11,18 @@ struct Point {
     cos2: real,
     back: real,
     weight: real, // of f here, in an integral
+    st: real,     // what tells azimuths from each other
+    dt: real,
+    cp: real,
+    cm: real,
+    sp: real,
+    sm: real,
 }
 
 fn pair_of(p: Point) -> Pair {
-    return Pair(p.hz2, p.dt2, p.ss, p.sd, p.mu_i, p.mu_e, 0.0, 0.0);
+    return Pair(p.hz2, p.dt2, p.ss, p.sd, p.mu_i, p.mu_e, 0.0, 0.0, p.st, p.dt);
 }
 
 fn azimuth_of(p: Point) -> Azimuth {
-    return Azimuth(p.sin2, p.cos2, p.back, 0.0, 0.0);
+    return Azimuth(p.sin2, p.cos2, p.back, 0.0, 0.0, p.cp, p.cm, p.sp, p.sm);
 }

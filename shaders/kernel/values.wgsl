@@ -7,6 +7,17 @@ struct Quad {
     sin2: real4, // sin²(δ/2)
     cos2: real4, // cos²(δ/2)
     back: real4, // max(0, −cos δ)
+    cp: real4,   // (cos φi ± cos φe)/2, (sin φi ± sin φe)/2
+    cm: real4,
+    sp: real4,
+    sm: real4,
+}
+
+struct Azimuths {
+    a: Azimuth,
+    b: Azimuth,
+    c: Azimuth,
+    d: Azimuth,
 }
 
 /// A row, and where it is stored.
@@ -45,18 +56,28 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 fn row_at(row: u32) -> Row {
     let there = min(row, job.end - 1u);
     let pair = rows[there];
-    return Row(pair, lobe_row(pair, pair.own), (there * job.azimuths + job.nodes) * CHANNELS, there == row);
+    return Row(pair, lobe_row(pair, pair.own), (u32(pair.bin) * job.azimuths + job.nodes) * CHANNELS, there == row);
 }
 
 fn evaluate(row: Row, quad: u32, z: Quad, w: Weights) {
     if ADD && !row.is_there {
         return;
     }
-    let a0 = lobe(row.pair, Azimuth(z.sin2.x, z.cos2.x, z.back.x, 0.0, 0.0), row.pair.own, row.lobe);
-    let a1 = lobe(row.pair, Azimuth(z.sin2.y, z.cos2.y, z.back.y, 0.0, 0.0), row.pair.own, row.lobe);
-    let a2 = lobe(row.pair, Azimuth(z.sin2.z, z.cos2.z, z.back.z, 0.0, 0.0), row.pair.own, row.lobe);
-    let a3 = lobe(row.pair, Azimuth(z.sin2.w, z.cos2.w, z.back.w, 0.0, 0.0), row.pair.own, row.lobe);
+    let z4 = azimuths_of(z);
+    let a0 = lobe(row.pair, z4.a, row.pair.own, row.lobe);
+    let a1 = lobe(row.pair, z4.b, row.pair.own, row.lobe);
+    let a2 = lobe(row.pair, z4.c, row.pair.own, row.lobe);
+    let a3 = lobe(row.pair, z4.d, row.pair.own, row.lobe);
     store(row.first + quad * CHANNELS, w, a0, a1, a2, a3);
+}
+
+fn azimuths_of(z: Quad) -> Azimuths {
+    return Azimuths(
+        Azimuth(z.sin2.x, z.cos2.x, z.back.x, 0.0, 0.0, z.cp.x, z.cm.x, z.sp.x, z.sm.x),
+        Azimuth(z.sin2.y, z.cos2.y, z.back.y, 0.0, 0.0, z.cp.y, z.cm.y, z.sp.y, z.sm.y),
+        Azimuth(z.sin2.z, z.cos2.z, z.back.z, 0.0, 0.0, z.cp.z, z.cm.z, z.sp.z, z.sm.z),
+        Azimuth(z.sin2.w, z.cos2.w, z.back.w, 0.0, 0.0, z.cp.w, z.cm.w, z.sp.w, z.sm.w),
+    );
 }
 
 fn put(at: u32, v: vec4f) {

@@ -7,7 +7,7 @@ fn lobe(p: Pair, a: Azimuth, alpha: real, row: real) -> real2 {
 
 /// What all azimuths share. It has the unit of D with it, so that what `visibility_of_normal` makes of it is in proportion.
 fn lobe_row(p: Pair, alpha: real) -> real {
-    return visibility(p.mu_i, p.mu_e, alpha) * NDF_UNIT;
+    return visibility(Toward(p.mu_i, alpha), Toward(p.mu_e, alpha)) * NDF_UNIT;
 }
 
 /// α → 0 at fixed μ: the ideal mirror's, as far as the masking lets it.

@@ -1,7 +1,7 @@
 // Kelemen & Szirmay-Kalos 2001: G2 = μi μe / (ωi·ωm)², of which f keeps 1 / |ωi + ωe|².
 
 /// Nothing is shared by all azimuths.
-fn visibility(mu_i: real, mu_e: real, alpha: real) -> real {
+fn visibility(i: Toward, e: Toward) -> real {
     return 0.25;
 }
 

@@ -1,8 +1,8 @@
 // No masking: G2 = 1 above the horizon. f grows as 1/(μi μe) and ρ as 1/μ: both are unbounded at grazing.
 
 /// G2 / (4 μi μe)
-fn visibility(mu_i: real, mu_e: real, alpha: real) -> real {
-    return 0.25 / (mu_i * mu_e);
+fn visibility(i: Toward, e: Toward) -> real {
+    return 0.25 / (i.mu * e.mu);
 }
 
 /// G2 = 2 μe x / masking(x, y)

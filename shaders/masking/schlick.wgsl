@@ -1,9 +1,13 @@
 // What Schlick's masking is for either k.
 
 /// G2 / (4 μi μe)
-fn visibility(mu_i: real, mu_e: real, alpha: real) -> real {
-    let k = schlick_k(alpha);
-    return 0.25 / ((mu_i * (1.0 - k) + k) * (mu_e * (1.0 - k) + k));
+fn visibility(i: Toward, e: Toward) -> real {
+    return 0.25 / (schlick_below(i) * schlick_below(e));
+}
+
+fn schlick_below(w: Toward) -> real {
+    let k = schlick_k(w.alpha);
+    return w.mu * (1.0 - k) + k;
 }
 
 /// G2 = 2 μe x / masking(x, y), for μi = μe x/y.

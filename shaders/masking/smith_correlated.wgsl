@@ -1,8 +1,8 @@
 // Smith's masking-shadowing at correlated heights: Heitz 2014, eq. 99: G2 = 1 / (1 + Λ(ωi) + Λ(ωe)).
 
 /// G2 / (4 μi μe)
-fn visibility(mu_i: real, mu_e: real, alpha: real) -> real {
-    return 0.5 / (mu_i * smith_root(mu_e, alpha) + mu_e * smith_root(mu_i, alpha));
+fn visibility(i: Toward, e: Toward) -> real {
+    return 0.5 / (i.mu * smith_root(e.mu, e.alpha) + e.mu * smith_root(i.mu, i.alpha));
 }
 
 /// G2 = 2 μe x / masking(x, y), for μi = μe x/y: no division until the end.

@@ -2,8 +2,8 @@
 // G1 = 1 / (1 + Λ) = 2μ / (μ + (1 + 2Λ) μ).
 
 /// G2 / (4 μi μe)
-fn visibility(mu_i: real, mu_e: real, alpha: real) -> real {
-    return 1.0 / ((mu_i + smith_root(mu_i, alpha)) * (mu_e + smith_root(mu_e, alpha)));
+fn visibility(i: Toward, e: Toward) -> real {
+    return 1.0 / ((i.mu + smith_root(i.mu, i.alpha)) * (e.mu + smith_root(e.mu, e.alpha)));
 }
 
 /// G2 = 2 μe x / masking(x, y), for μi = μe x/y.

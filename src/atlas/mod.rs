@@ -145,7 +145,8 @@ pub fn measure_model(
         evaluate: &mut |alphas, angles, values| points.sweep(alphas, angles, values),
         reference: &|angles: &Angles, alpha| {
             let Angles { theta_i, theta_e, .. } = *angles;
-            let angles = reference::Angles { theta_i, theta_e, delta_phi: angles.delta_phi() };
+            let angles =
+                reference::Angles { theta_i, theta_e, delta_phi: angles.delta_phi(), phi_i: angles.phi_i };
             reference.brdf(&angles, &Setting { alpha, parameters }).unwrap_or([f64::NAN; 2])
         },
         name: &name,

@@ -110,7 +110,8 @@ fn form(
         },
         reference: &|angles, alpha| {
             let Angles { theta_i, theta_e, .. } = *angles;
-            let angles = reference::Angles { theta_i, theta_e, delta_phi: angles.delta_phi() };
+            let angles =
+                reference::Angles { theta_i, theta_e, delta_phi: angles.delta_phi(), phi_i: angles.phi_i };
             GGX.brdf(&angles, &alpha.into()).map_or([f64::NAN; 2], |[a, b]| [a + b, 0.0])
         },
         name: &|_, alpha| format!("--model ggx --set alpha={alpha:?} --set f0=1 --set f90=1"),

@@ -1,6 +1,6 @@
 //! Records the baking of a table on a device that the caller owns.
 
-use super::compose::{Kernel, VALUE_WINDOW, compose, validate};
+use super::compose::{Kernel, QUAD_BYTES, VALUE_WINDOW, compose, validate};
 use super::loops::{self, SAFE_TURNS};
 use super::stage::{Job, Rows, Stage, Stages, TILE_SUMS, Upload};
 use crate::axis::Variable;
@@ -347,39 +347,48 @@ impl Baker {
         output: &wgpu::Buffer,
         steps: &mut Vec<Step>,
     ) -> Result<()> {
-        const QUAD: u64 = 48;
-        const BYTES: u64 = VALUE_WINDOW as u64 * QUAD;
+        const BYTES: u64 = (VALUE_WINDOW * QUAD_BYTES) as u64;
         let pipeline = &self.pipeline(stage.kernel, stage.model, stage.channels, stage.precision)?;
-        let rows = self.init(bytemuck::cast_slice(&rows.of(units)), wgpu::BufferUsages::STORAGE);
-        for quad in (0..stage.per_unit).step_by(VALUE_WINDOW) {
-            let columns = VALUE_WINDOW.min(stage.per_unit - quad);
-            let (offset, size) = (quad as u64 * QUAD, std::num::NonZeroU64::new(BYTES));
-            let window = wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: quads, offset, size });
-            let rows_per_step =
-                (EVALUATIONS_PER_DISPATCH / (columns * stage.cost)).clamp(1, ROWS_PER_DISPATCH);
-            for row in (0..units.len()).step_by(rows_per_step) {
-                let rows_here = rows_per_step.min(units.len() - row);
-                let job = Job {
-                    first: count(row)?,
-                    end: count(row + rows_here)?,
-                    columns: count(columns)?,
-                    azimuths: count(stage.per_unit)?,
-                    nodes: count(quad)?,
-                    ..stage.job
-                };
-                let job = self.init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
-                let resources = [
-                    job.as_entire_binding(),
-                    output.as_entire_binding(),
-                    rows.as_entire_binding(),
-                    window.clone(),
-                ];
-                steps.push(Step {
-                    pipeline: pipeline.clone(),
-                    bind_group: self.bind(pipeline, resources),
-                    workgroups: [1, count(rows_here.div_ceil(4 * 8))?],
-                    evaluations: (columns * rows_here * stage.cost) as u64,
-                });
+        let groups = rows.of(units);
+        let all = groups.concat();
+        let rows = self.init(bytemuck::cast_slice(&all), wgpu::BufferUsages::STORAGE);
+        let windows = stage.per_unit.div_ceil(VALUE_WINDOW);
+        let mut end = 0;
+        for (frame, group) in groups.iter().enumerate() {
+            let first = end;
+            end += group.len();
+            for window in 0..windows {
+                let quad = window * VALUE_WINDOW;
+                let columns = VALUE_WINDOW.min(stage.per_unit - quad);
+                let offset = (frame * windows + window) as u64 * BYTES;
+                let size = std::num::NonZeroU64::new(BYTES);
+                let binding = wgpu::BufferBinding { buffer: quads, offset, size };
+                let rows_per_step =
+                    (EVALUATIONS_PER_DISPATCH / (columns * stage.cost)).clamp(1, ROWS_PER_DISPATCH);
+                for row in (first..end).step_by(rows_per_step) {
+                    let rows_here = rows_per_step.min(end - row);
+                    let job = Job {
+                        first: count(row)?,
+                        end: count(row + rows_here)?,
+                        columns: count(columns)?,
+                        azimuths: count(stage.per_unit)?,
+                        nodes: count(quad)?,
+                        ..stage.job
+                    };
+                    let job = self.init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
+                    let resources = [
+                        job.as_entire_binding(),
+                        output.as_entire_binding(),
+                        rows.as_entire_binding(),
+                        wgpu::BindingResource::Buffer(binding.clone()),
+                    ];
+                    steps.push(Step {
+                        pipeline: pipeline.clone(),
+                        bind_group: self.bind(pipeline, resources),
+                        workgroups: [1, count(rows_here.div_ceil(4 * 8))?],
+                        evaluations: (columns * rows_here * stage.cost) as u64,
+                    });
+                }
             }
         }
         Ok(())

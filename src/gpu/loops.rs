@@ -33,14 +33,14 @@ pub(super) fn check(table: &TablePlan, work: &Work, known: impl FnOnce() -> Resu
 fn turns(work: &Work) -> usize {
     match &work.kind {
         // Eight invocations share a window.
-        WorkKind::Values { .. } => VALUE_WINDOW / 8 + 1,
+        WorkKind::Values(_) => VALUE_WINDOW / 8 + 1,
         WorkKind::Integrals { inner, outer } => {
             let inner = match inner {
                 Inner::Slopes(work) => slopes(work),
                 Inner::Product { azimuths, .. } => in_blocks(azimuths.len()),
                 // And a loop over four α.
                 Inner::Samples(work) => in_blocks(work.chunk) + 5,
-                Inner::Mapped(work) => in_blocks(work.most()),
+                Inner::Mapped(work) => work.most() + 3 * work.most().div_ceil(32) + 1,
                 Inner::Analytic { .. } => 0,
             };
             outer.iter().map(|matrix| in_blocks(matrix.columns)).fold(inner, usize::max)

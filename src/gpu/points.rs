@@ -7,7 +7,7 @@ use super::device::Device;
 use super::evaluate::Flight;
 use super::stage::Job;
 use crate::error::Result;
-use crate::mapped::Sample;
+use crate::mapped::{POINT, Sample};
 use crate::pair::{Azimuth, Pair};
 use crate::plan::{Lobe, Precision};
 use crate::points::Angles;
@@ -31,7 +31,7 @@ pub(crate) struct Points<'a> {
 }
 
 /// `Point` of `shaders/kernel/point.wgsl`.
-type Factors = [f32; 10];
+type Factors = [f32; POINT];
 
 /// One of two that take turns.
 struct Slot {

@@ -11,7 +11,7 @@ use crate::plan::{INTEGRAL_F32, Lobe, Precision};
 use crate::sampling::Sampler;
 use crate::slopes::{Side, TILE_ALPHAS, TILE_COLUMNS};
 use crate::spread::Matrix;
-use crate::work::{Inner, Work, WorkKind};
+use crate::work::{Inner, ValueWork, Work, WorkKind};
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 
@@ -48,25 +48,39 @@ pub(super) struct Stage {
 pub(super) struct Rows {
     alphas: Vec<f64>,
     pairs: Vec<Row>,
+    /// How many φi there are, and how many θe: a row is of an α, a θi, a φi and a θe, the last of which turns fastest.
+    frames: usize,
+    thetas_e: usize,
 }
 
-/// `Pair` of `shaders/pair.wgsl` in f32, the only precision of values on a device. The last is α.
-type Row = [f32; 8];
+/// `Pair` of `shaders/pair.wgsl` in f32, the only precision of values on a device, with a row's place and α.
+type Row = [f32; 10];
+const PLACE: usize = 6;
+const ALPHA: usize = 7;
 
 impl Rows {
-    fn new(alphas: &[f64], pairs: &[Pair]) -> Self {
+    fn new(alphas: &[f64], values: &ValueWork) -> Self {
         let row = |pair: &Pair| pair.to_array().map(|x| x as f32);
-        Self { alphas: alphas.to_vec(), pairs: pairs.iter().map(row).collect() }
+        let ValueWork { pairs, frames, thetas_e, .. } = values;
+        let pairs = pairs.iter().map(row).collect();
+        Self { alphas: alphas.to_vec(), pairs, frames: frames.len(), thetas_e: *thetas_e }
     }
 
-    /// Some of them as the kernel lays them out.
-    pub fn of(&self, units: &Range<usize>) -> Vec<Row> {
-        let row = |unit: usize| {
-            let mut row = self.pairs[unit % self.pairs.len()];
-            row[7] = self.alphas[unit / self.pairs.len()] as f32;
-            row
-        };
-        units.clone().map(row).collect()
+    /// Some of them as the kernel lays them out, those of a φi together: as many groups as there are φi.
+    pub fn of(&self, units: &Range<usize>) -> Vec<Vec<Row>> {
+        let mut groups = vec![Vec::new(); self.frames];
+        for unit in units.clone() {
+            let (outer, theta_e) = (unit / self.thetas_e, unit % self.thetas_e);
+            let (outer, frame) = (outer / self.frames, outer % self.frames);
+            let thetas_i = self.pairs.len() / self.thetas_e;
+            let (alpha, theta_i) = (outer / thetas_i, outer % thetas_i);
+            let mut row = self.pairs[theta_i * self.thetas_e + theta_e];
+            // A tile has fewer rows than a float counts.
+            row[PLACE] = (unit - units.start) as f32;
+            row[ALPHA] = self.alphas[alpha] as f32;
+            groups[frame].push(row);
+        }
+        groups
     }
 }
 
@@ -98,17 +112,17 @@ impl Stages {
         let channels = lobe.weights.len();
         let alphas: Vec<_> = work.alphas.iter().map(|&alpha| lobe.model.on_device(alpha)).collect();
         match &work.kind {
-            WorkKind::Values { pairs, azimuths } => Ok(Self {
+            WorkKind::Values(values) => Ok(Self {
                 inner: Stage {
                     kernel: if accumulate { Kernel::AddValues } else { Kernel::Values },
                     model: Some(lobe.model),
                     channels,
                     precision: Precision::F32,
                     job: Job::new(lobe, 1.0),
-                    inputs: vec![upload.quads(azimuths)],
-                    rows: Some(Rows::new(&alphas, pairs)),
+                    inputs: vec![upload.quads(values)],
+                    rows: Some(Rows::new(&alphas, values)),
                     mapped: None,
-                    per_unit: azimuths.len().div_ceil(4),
+                    per_unit: values.columns().div_ceil(4),
                     units: 1,
                     cost: 4,
                 },
@@ -382,16 +396,21 @@ impl Upload<'_> {
         self.reals(azimuths.iter().map(|azimuth| azimuth.to_array()).collect::<Vec<_>>().as_flattened())
     }
 
-    /// Azimuths of values by fours, sin², cos² and what is back, in whole windows.
-    fn quads(&self, azimuths: &[Azimuth]) -> wgpu::Buffer {
+    /// Azimuths of values by fours, as the kernel takes them, those of each φi in whole windows.
+    fn quads(&self, values: &ValueWork) -> wgpu::Buffer {
         let four = |four: &[Azimuth]| {
             // The last one fills the last quad.
             let of = |k: usize| &four[k.min(four.len() - 1)];
             let at = |get: fn(&Azimuth) -> f64| [0, 1, 2, 3].map(|k| get(of(k)) as f32);
-            [at(|a| a.sin2), at(|a| a.cos2), at(|a| a.back)]
+            let frame = [at(|a| a.frame.cp), at(|a| a.frame.cm), at(|a| a.frame.sp), at(|a| a.frame.sm)];
+            let [cp, cm, sp, sm] = frame;
+            [at(|a| a.sin2), at(|a| a.cos2), at(|a| a.back), cp, cm, sp, sm]
         };
-        let mut quads: Vec<_> = azimuths.chunks(4).map(four).collect();
-        quads.resize(quads.len().next_multiple_of(VALUE_WINDOW), [[0.0; 4]; 3]);
+        let mut quads: Vec<[[f32; 4]; 7]> = Vec::new();
+        for azimuths in &values.frames {
+            quads.extend(azimuths.chunks(4).map(four));
+            quads.resize(quads.len().next_multiple_of(VALUE_WINDOW), [[0.0; 4]; 7]);
+        }
         self.baker.init(bytemuck::cast_slice(&quads), wgpu::BufferUsages::UNIFORM)
     }
 

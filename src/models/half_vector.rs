@@ -2,12 +2,14 @@
 //! no kernel of its own. As `shaders/lobe/slopes.wgsl`: about the fixed direction, in the azimuth φ of ωm and in
 //! r(tan θm), up to the horizon; but G2 may be anything, and panels end where it has a kink.
 
+pub(crate) mod stretched;
+
 use super::masking::Masking;
 use super::ndf::{Map, Ndf};
 use super::{SlopeCounts, is_fine};
 use crate::mapped::Sample;
 use crate::pair::{Azimuth, Half, Pair};
-use crate::quadrature::gauss_legendre;
+use crate::quadrature::{Node, gauss_legendre};
 use crate::setting::Setting;
 use crate::slopes::turns;
 
@@ -26,36 +28,8 @@ pub(super) fn samples<N: Ndf, M: Masking>(
     for (sign, counts) in [1.0, -1.0].into_iter().zip(counts) {
         let nodes = gauss_legendre(counts.nodes);
         for turn in turns(mu, sign, &gauss_legendre(counts.azimuths), tolerance) {
-            let mut ends = vec![0.0];
-            let breaks = M::breaks(turn.c, mu).into_iter().filter(|&t| 0.0 < t && t < turn.t_max);
-            ends.extend(breaks.chain([turn.t_max]).map(end));
-            for panel in ends.windows(2) {
-                let (start, width) = (panel[0], panel[1] - panel[0]);
-                for node in &nodes {
-                    // Nodes crowd at r = 0 where G2 turns there: xⁿ.
-                    let graded = node.x.powi(M::GRADE);
-                    let weight = node.weight * f64::from(M::GRADE) * node.x.powi(M::GRADE - 1);
-                    let Map { p, m, weight: density } = map(start + width * graded);
-                    // D cos θm dωm = w dv dφ/2π, and both halves of the azimuth.
-                    let y = m * m + p * p;
-                    let root = y.sqrt();
-                    let half = Half { ht2: p * p, h2: y, c: 1.0, one_minus_c: 0.0 };
-                    let d = N::ndf(&half, m * m, s);
-                    let solid_angle = weight * width * density * m * turn.weight / (d * (m / root));
-                    // ωe = 2 (ωi·ωm) ωm − ωi
-                    let projected = (sin * turn.cos * p + mu * m) / root; // ωi·ωm
-                    let x = 2.0 * projected * (p / root) * turn.cos - sin;
-                    let y_e = 2.0 * projected * (p / root) * turn.sin;
-                    let t = p / m;
-                    let mu_e = m * m / y * mu * (turn.t_max - t) * (t + 1.0 / turn.t_max);
-                    if !(mu_e > 0.0 && solid_angle.is_finite()) {
-                        continue;
-                    }
-                    let pair = Pair::of_cosines_and_sines([mu, mu_e], [sin, x.hypot(y_e)]);
-                    let azimuth = Azimuth::new(y_e.atan2(-x));
-                    samples.push(Sample { pair, azimuth, weight: 4.0 * projected * mu_e * solid_angle });
-                }
-            }
+            let ray = Ray::new([mu, sin], [turn.cos, turn.sin], turn.weight);
+            along::<N, M>(&ray, 0.0, &nodes, &end, &map, s.alpha, s, &mut samples);
         }
     }
     samples
@@ -64,6 +38,74 @@ pub(super) fn samples<N: Ndf, M: Masking>(
 /// At most so many.
 pub(super) fn most<M: Masking>(counts: [SlopeCounts; 2]) -> usize {
     counts.map(|c| c.azimuths * c.nodes).iter().sum::<usize>() * (1 + M::MOST_BREAKS)
+}
+
+/// Normals of one azimuth.
+struct Ray {
+    /// cos θ and sin θ of the fixed direction.
+    fixed: [f64; 2],
+    /// cos and sin of the azimuth from that of the fixed direction.
+    turn: [f64; 2],
+    /// tan θ of the fixed direction times the cosine of the azimuth.
+    c: f64,
+    /// tan θm of the normal that reflects the fixed direction onto the horizon.
+    t_max: f64,
+    /// dφ/2π
+    weight: f64,
+}
+
+impl Ray {
+    fn new([mu, sin]: [f64; 2], turn: [f64; 2], weight: f64) -> Self {
+        let c = sin / mu * turn[0];
+        let root = c.hypot(1.0);
+        let t_max = if c > 0.0 { c + root } else { 1.0 / (root - c) };
+        Self { fixed: [mu, sin], turn, c, t_max, weight }
+    }
+}
+
+/// The directions that the normals of a ray reflect the fixed one to.
+#[allow(clippy::too_many_arguments)]
+fn along<N: Ndf, M: Masking>(
+    ray: &Ray,
+    phi: f64,
+    nodes: &[Node],
+    end: &impl Fn(f64) -> f64,
+    map: &impl Fn(f64) -> Map,
+    alpha: f64,
+    s: &Setting,
+    samples: &mut Vec<Sample>,
+) {
+    let Ray { fixed: [mu, sin], turn: [cos, sin_turn], c, t_max, weight: azimuth } = *ray;
+    let mut ends = vec![0.0];
+    let breaks = M::breaks(c, mu).into_iter().filter(|&t| 0.0 < t && t < t_max);
+    ends.extend(breaks.chain([t_max]).map(end));
+    for panel in ends.windows(2) {
+        let (start, width) = (panel[0], panel[1] - panel[0]);
+        for node in nodes {
+            // Nodes crowd at r = 0 where G2 turns there: xⁿ.
+            let graded = node.x.powi(M::GRADE);
+            let weight = node.weight * f64::from(M::GRADE) * node.x.powi(M::GRADE - 1);
+            let Map { p, m, weight: density } = map(start + width * graded);
+            // D cos θm dωm = w dv dφ/2π
+            let y = m * m + p * p;
+            let root = y.sqrt();
+            let half = Half { ht2: p * p, h2: y, c: 1.0, one_minus_c: 0.0 };
+            let d = N::ndf(&half, m * m, &Setting { alpha, ..*s });
+            let solid_angle = weight * width * density * m * azimuth / (d * (m / root));
+            // ωe = 2 (ωi·ωm) ωm − ωi
+            let projected = (sin * cos * p + mu * m) / root; // ωi·ωm
+            let x = 2.0 * projected * (p / root) * cos - sin;
+            let y_e = 2.0 * projected * (p / root) * sin_turn;
+            let t = p / m;
+            let mu_e = m * m / y * mu * (t_max - t) * (t + 1.0 / t_max);
+            if !(mu_e > 0.0 && solid_angle.is_finite()) {
+                continue;
+            }
+            let pair = Pair::of_cosines_and_sines([mu, mu_e], [sin, x.hypot(y_e)]);
+            let azimuth = Azimuth::at(phi, (-y_e).atan2(-x));
+            samples.push(Sample { pair, azimuth, weight: 4.0 * projected * mu_e * solid_angle });
+        }
+    }
 }
 
 #[cfg(test)]

@@ -7,18 +7,18 @@
 use super::fresnel::{
     Fresnel, conductor::Conductor, dielectric::Dielectric, f82::F82, none::Constant, schlick::Schlick,
 };
-use super::half_vector;
+use super::half_vector::{self, stretched};
 use super::masking::{
-    Masking, kelemen::Kelemen, none::Unmasked, schlick_ggx::SchlickGgx, schlick_ggx_direct::SchlickGgxDirect,
-    smith_correlated::SmithCorrelated, smith_separable::SmithSeparable,
+    Masking, Toward, kelemen::Kelemen, none::Unmasked, schlick_ggx::SchlickGgx,
+    schlick_ggx_direct::SchlickGgxDirect, smith_correlated::SmithCorrelated, smith_separable::SmithSeparable,
 };
-use super::ndf::{Map, Ndf, beckmann::Beckmann, ggx::Ggx};
+use super::ndf::{Map, Ndf, beckmann::Beckmann, ggx::Ggx, stretched::Stretched};
 use super::{
     Integral, Metal, Model, Parameter, Part, Sampling, SlopeCounts, SlopeMap, Slopes, Term, mirror, part,
 };
 use crate::error::{Error, Result};
 use crate::mapped;
-use crate::pair::{Azimuth, Half, MU_MIN, Pair};
+use crate::pair::{Azimuth, Frame, Half, MU_MIN, Pair};
 use crate::reference;
 use crate::setting::{Parameters, Setting};
 use std::marker::PhantomData;
@@ -37,6 +37,8 @@ pub struct Microfacet {
     pub(crate) metals: &'static [Metal],
     /// Why its parameters are refused, if they are.
     pub(crate) refused: fn(&Parameters) -> Option<&'static str>,
+    /// The relative error of its values in f32.
+    pub(crate) value_f32: fn(&Setting) -> f64,
 }
 
 /// The parts there are: the default is the first of its kind, and an entry here is all that a new one takes.
@@ -67,7 +69,7 @@ macro_rules! parts {
 }
 
 parts! {
-    ndfs: Ggx, Beckmann;
+    ndfs: Ggx, Beckmann, Stretched<Ggx>, Stretched<Beckmann>;
     maskings: SmithCorrelated, SmithSeparable, SchlickGgx, SchlickGgxDirect, Kelemen, Unmasked;
     fresnels: Schlick, Constant, Dielectric, Conductor, F82;
 }
@@ -84,6 +86,22 @@ pub(super) static BECKMANN: Model = Model {
     summary: "Beckmann microfacets, height-correlated Smith, Schlick: f = F0·A + F90·B",
     source: "Walter et al. 2007, eq. 20 and 25; Heitz 2014, eq. 99; Schlick 1994, eq. 15",
     ..Made::<Beckmann, SmithCorrelated, Schlick>::MODEL
+};
+
+/// Anisotropic GGX with the defaults.
+pub(super) static GGX_ANISOTROPIC: Model = Model {
+    summary: "anisotropic GGX microfacets, height-correlated Smith, Schlick: f = F0·A + F90·B",
+    source: "Walter et al. 2007, eq. 20; Heitz 2014, eq. 85, 86 and 99; Schlick 1994, eq. 15",
+    parameters: Stretched::<Ggx>::PARAMETERS,
+    ..Made::<Stretched<Ggx>, SmithCorrelated, Schlick>::MODEL
+};
+
+/// Anisotropic Beckmann with the defaults.
+pub(super) static BECKMANN_ANISOTROPIC: Model = Model {
+    summary: "anisotropic Beckmann microfacets, height-correlated Smith, Schlick: f = F0·A + F90·B",
+    source: "Walter et al. 2007, eq. 20; Heitz 2014, eq. 83, 84 and 99; Schlick 1994, eq. 15",
+    parameters: Stretched::<Beckmann>::PARAMETERS,
+    ..Made::<Stretched<Beckmann>, SmithCorrelated, Schlick>::MODEL
 };
 
 impl Model {
@@ -181,7 +199,7 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         },
         value_f32: N::VALUE_F32,
         lobe: Self::lobe,
-        reference: Some(&Self::REFERENCE),
+        reference: Some(if N::STRETCHES { &Self::STRETCHED_REFERENCE } else { &Self::REFERENCE }),
     };
 
     const TERMS: Microfacet = Microfacet {
@@ -190,12 +208,21 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         fresnel: F::TERM,
         metals: F::METALS,
         refused: F::refused,
+        value_f32: N::value_f32,
     };
 
-    const PARTS: [Part; 4] = [F::TERM.part, N::TERM.part, M::TERM.part, part!("lobe/microfacet")];
+    const PARTS: [Part; 4] = [
+        F::TERM.part,
+        N::TERM.part,
+        M::TERM.part,
+        if N::STRETCHES { part!("lobe/anisotropic") } else { part!("lobe/microfacet") },
+    ];
 
     const REFERENCE: reference::Microfacet =
         reference::Microfacet { ndf: N::REFERENCE, masking: M::REFERENCE, fresnel: F::REFERENCE };
+
+    const STRETCHED_REFERENCE: reference::Anisotropic =
+        reference::Anisotropic { ndf: N::REFERENCE, masking: M::REFERENCE, fresnel: F::REFERENCE };
 
     const SLOPES: Option<Slopes> = match N::MAPS {
         Some([coarse, fine]) if !M::OF_NORMAL => Some(Self::slopes(coarse, fine)),
@@ -204,13 +231,18 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
 
     const MAP: mapped::Map = mapped::Map {
         samples: |fixed, s, tolerance| {
-            half_vector::samples::<N, M>(fixed.mu, s, Self::counts(fixed.mu, s, tolerance), tolerance)
+            let counts = Self::counts(fixed.mu, s, tolerance);
+            match N::STRETCHES {
+                true => stretched::samples::<N, M>(fixed, s, counts),
+                false => half_vector::samples::<N, M>(fixed.mu, s, counts, tolerance),
+            }
         },
         most: |s, tolerance| {
-            let cost = |mu| half_vector::most::<M>(Self::counts(mu, s, tolerance));
+            let panels = if N::STRETCHES { stretched::PANELS } else { 1 };
+            let cost = |mu| panels * half_vector::most::<M>(Self::counts(mu, s, tolerance));
             [1.0, 0.3, 0.1, 0.03, 1e-2, 1e-3, 1e-4, MU_MIN].map(cost).into_iter().max().unwrap_or(1)
         },
-        limit: if N::IS_MIRROR_AT_0 { Some(Self::mirror_limit) } else { None },
+        limit: |mu, s| (N::IS_MIRROR_AT_0 && N::axes(s) == [0.0; 2]).then(|| Self::mirror_limit(mu, s)),
     };
 
     const fn slopes(coarse: Part, fine: Part) -> Slopes {
@@ -247,8 +279,19 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
 
     fn lobe(p: &Pair, a: &Azimuth, setting: &Setting) -> [f64; 2] {
         let h = Half::new(p, a);
-        let shared = M::visibility::<N>(p.mu_i, p.mu_e, setting);
-        let s = N::ndf(&h, p.hz2, setting) * M::of_normal(shared, p, &h);
+        let Frame { cp, cm, sp, sm } = a.frame;
+        let axes = N::axes(setting);
+        let with = |alpha: f64| Setting { alpha, ..*setting };
+        let toward = |mu: f64, cos: f64, sin: f64| Toward {
+            mu,
+            setting: if N::STRETCHES { with((axes[0] * cos).hypot(axes[1] * sin)) } else { *setting },
+        };
+        let shared = M::visibility::<N>(&toward(p.mu_i, cp + cm, sp + sm), &toward(p.mu_e, cp - cm, sp - sm));
+        let d = match N::STRETCHES {
+            true => N::ndf(&h.stretched(p, a, axes), p.hz2, &with((axes[0] * axes[1]).sqrt())),
+            false => N::ndf(&h, p.hz2, setting),
+        };
+        let s = d * M::of_normal(shared, p, &h);
         F::fresnel(h.c, h.one_minus_c, setting).map(|f| f * s)
     }
 
@@ -275,7 +318,7 @@ mod tests {
     /// Names are keys of pipelines, words of recipes and parts of file names.
     #[test]
     fn every_combination_has_a_name_of_its_own() {
-        let defaults = [&GGX, &BECKMANN];
+        let defaults = [&GGX, &BECKMANN, &GGX_ANISOTROPIC, &BECKMANN_ANISOTROPIC];
         assert_eq!(MICROFACETS.len(), defaults.len() * MASKINGS.len() * FRESNELS.len());
         let names: Vec<_> = models::all().map(|model| model.name).collect();
         for (k, name) in names.iter().enumerate() {

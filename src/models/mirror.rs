@@ -44,8 +44,14 @@ impl<F: Fresnel> Made<F> {
         reference: Some(&Self::REFERENCE),
     };
 
-    const TERMS: Microfacet =
-        Microfacet { ndf: TERM, masking: None, fresnel: F::TERM, metals: F::METALS, refused: F::refused };
+    const TERMS: Microfacet = Microfacet {
+        ndf: TERM,
+        masking: None,
+        fresnel: F::TERM,
+        metals: F::METALS,
+        value_f32: |_| crate::plan::VALUE_F32,
+        refused: F::refused,
+    };
     const PARTS: [Part; 2] = [F::TERM.part, TERM.part];
     const REFERENCE: reference::Mirror = reference::Mirror { fresnel: F::REFERENCE };
 }

@@ -200,6 +200,8 @@ models! {
     diffuse::frostbite::MODEL,
     microfacet::GGX,
     microfacet::BECKMANN,
+    microfacet::GGX_ANISOTROPIC,
+    microfacet::BECKMANN_ANISOTROPIC,
     mirror::MODEL,
 }
 
@@ -281,6 +283,16 @@ impl Model {
     /// Whether the rules that sample can do its integrals.
     pub fn has_samplers(&self) -> bool {
         matches!(self.integral, Integral::Slopes(slopes) if slopes.sampling.is_some())
+    }
+
+    /// The relative error of its values in f32 at a setting.
+    pub(crate) fn value_f32_at(&self, s: &Setting) -> f64 {
+        self.microfacet.map_or(self.value_f32, |made| (made.value_f32)(s))
+    }
+
+    /// Whether f depends on both azimuths, and not on δφ alone.
+    pub fn is_anisotropic(&self) -> bool {
+        self.shape.is_some_and(|shape| shape.anisotropic)
     }
 
     /// What shaders get of a shape, in the model's own measure.

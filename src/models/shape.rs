@@ -18,6 +18,8 @@ pub struct Shape {
     pub least: f64,
     /// The power of the roughness in it: measure = most · roughnessᵖ.
     power: i32,
+    /// Whether it may differ along the tangent and the bitangent, so that f depends on both azimuths.
+    pub anisotropic: bool,
     /// Whether it is a share σ whose rest 1 − σ matters as much: shaders get σ/(1 − σ).
     odds: bool,
 }
@@ -48,8 +50,12 @@ impl Shape {
         most: 1.0,
         least: ALPHA_MIN_VALUE,
         power: 2,
+        anisotropic: false,
         odds: false,
     };
+
+    /// The mean α = √(αx αy) of slopes that differ along the tangent and the bitangent.
+    pub(crate) const ALPHA_XY: Self = Self { anisotropic: true, ..Self::ALPHA };
 
     /// The roughness as it is.
     pub(crate) const ROUGHNESS: Self = Self {
@@ -59,6 +65,7 @@ impl Shape {
         most: 1.0,
         least: 0.0,
         power: 1,
+        anisotropic: false,
         odds: false,
     };
 
@@ -70,6 +77,7 @@ impl Shape {
         most: FRAC_PI_2,
         least: 0.0,
         power: 1,
+        anisotropic: false,
         odds: false,
     };
 

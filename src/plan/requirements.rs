@@ -13,6 +13,7 @@ use crate::setting::Parameters;
 use crate::storage::Storage;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashSet};
+use std::f64::consts::FRAC_PI_2;
 use std::fmt;
 
 /// Everything that a scene requires, and what it does not.
@@ -100,6 +101,9 @@ const MU: usize = 64;
 const THETA: usize = 64;
 /// θi on n nodes and θe on 2n − 1 put every mirror pair on the grid.
 const VALUE_GRID: [usize; 3] = [33, 65, 65];
+/// The same of θi, θe and φe; φi has steps of two of φe over a quarter of a turn: every mirror pair is on the grid.
+const ANISOTROPIC_GRID: [usize; 3] = [17, 33, 65];
+const PHI: usize = 9;
 
 impl Plan {
     /// What `scene` requires, as far as `selection` lets it.
@@ -211,7 +215,7 @@ impl Plan {
                     self.leave_out(what, why);
                     continue;
                 }
-                let axes = natural_axes(quantity)?;
+                let axes = natural_axes(quantity, is_anisotropic(material))?;
                 self.tables.push(
                     material_table(what, quantity, material, lobes.clone(), axes)?.with_tolerance(tolerance),
                 );
@@ -261,7 +265,7 @@ impl Plan {
                 Axis::new(Variable::Roughness, ROUGHNESS, [min, max], Positions::Nodes, Mapping::Linear)?
             });
         }
-        axes.extend(natural_axes(quantity)?);
+        axes.extend(natural_axes(quantity, model.is_anisotropic())?);
         Ok(Some(axes))
     }
 
@@ -341,16 +345,26 @@ fn no_table(model: &Model, quantity: &Quantity) -> Option<&'static str> {
 }
 
 /// The natural axes of a quantity, at the default resolution.
-fn natural_axes(quantity: &Quantity) -> Result<Vec<Axis>> {
-    quantity.variables.iter().map(|&variable| natural_axis(quantity, variable)).collect()
+fn natural_axes(quantity: &Quantity, anisotropic: bool) -> Result<Vec<Axis>> {
+    let variables = quantity.variables(anisotropic);
+    variables.iter().map(|&variable| natural_axis(quantity, anisotropic, variable)).collect()
 }
 
-fn natural_axis(quantity: &Quantity, variable: Variable) -> Result<Axis> {
+fn natural_axis(quantity: &Quantity, anisotropic: bool, variable: Variable) -> Result<Axis> {
     let count = match (quantity.evaluation, variable) {
         // √μ on nodes: bilinear look-ups are then eight times closer than on texel centres of μ.
         (_, Variable::Mu) => {
             return Axis::new(variable, MU, [0.0, 1.0], Positions::Nodes, Mapping::Sqrt);
         }
+        // A quarter of a turn, which the others mirror.
+        (_, Variable::PhiI) => {
+            return Axis::new(variable, PHI, [0.0, FRAC_PI_2], Positions::Nodes, Mapping::Linear);
+        }
+        (Evaluation::Value, _) if anisotropic => match variable {
+            Variable::ThetaI => ANISOTROPIC_GRID[0],
+            Variable::ThetaE => ANISOTROPIC_GRID[1],
+            _ => ANISOTROPIC_GRID[2],
+        },
         (Evaluation::Value, Variable::ThetaI) => VALUE_GRID[0],
         (Evaluation::Value, Variable::ThetaE) => VALUE_GRID[1],
         (Evaluation::Value, Variable::DeltaPhi) => VALUE_GRID[2],
@@ -358,6 +372,11 @@ fn natural_axis(quantity: &Quantity, variable: Variable) -> Result<Axis> {
         _ => THETA,
     };
     Axis::natural(variable, count)
+}
+
+/// Whether a lobe of it tells azimuths from each other.
+fn is_anisotropic(material: &Material) -> bool {
+    material.lobes.iter().any(|lobe| models::find(&lobe.model).is_ok_and(Model::is_anisotropic))
 }
 
 /// `name`, with a number if another table has it.
@@ -372,8 +391,13 @@ fn requested(request: &TableRequest, scene: &Scene, tolerance: f64) -> Result<Ta
     let quantity = quantity::find(&request.quantity)?;
     let given = |variable| request.axes.iter().find(|axis| axis.variable == variable).cloned();
     let mut axes: Vec<_> = given(Variable::Roughness).into_iter().collect();
-    for &variable in quantity.variables {
-        axes.push(given(variable).map_or_else(|| natural_axis(quantity, variable), Ok)?);
+    let anisotropic = match &request.subject {
+        SubjectRequest::Basis { model, .. } => models::find(model)?.is_anisotropic(),
+        SubjectRequest::Material(name) => is_anisotropic(scene.material(name)?),
+    };
+    let anisotropic = anisotropic || given(Variable::PhiI).or(given(Variable::PhiE)).is_some();
+    for &variable in quantity.variables(anisotropic) {
+        axes.push(given(variable).map_or_else(|| natural_axis(quantity, anisotropic, variable), Ok)?);
     }
     let name = |subject: &str| request.name.clone().unwrap_or_else(|| format!("{subject}.{}", quantity.name));
     let table = match &request.subject {

@@ -1,6 +1,6 @@
 //! Our own models as subjects: a sum of lobes, with parameters that are fixed or have a range.
 
-use super::{Angles, Declared, Parameter, Subject, Tolerances, albedo};
+use super::{Angles, Declared, Parameter, Subject, Symmetry, Tolerances, albedo};
 use crate::axis::{Axis, Variable};
 use crate::bake::{Evaluator, Stages, Unobserved};
 use crate::check::Check;
@@ -34,6 +34,9 @@ pub struct Sum<'a> {
 
 /// The lobes at a setting of the parameters.
 type LobesAt<'a> = Box<dyn Fn(&[f64]) -> Result<Vec<Lobe>> + 'a>;
+
+/// Azimuths of incidence whose ρ_dh is checked, where they differ: the others are mirror images.
+const PHIS: [f64; 5] = [0.0, 0.3, 0.8, 1.2, FRAC_PI_2];
 
 /// R, G and B, also where they are alike: the kernel of `gonio eval`, and so its bits.
 const CHANNELS: usize = 3;
@@ -113,6 +116,20 @@ impl<'a> Sum<'a> {
         Ok(Self { name, evaluator, whole, parameters, lobes, declared, points, last: (setting, first) })
     }
 
+    /// The relative error of values in f32, the largest over the ends of the parameters.
+    fn value_f32(&self) -> f64 {
+        let lobes = self.corners().filter_map(|setting| (self.lobes)(&setting).ok()).flatten();
+        lobes.map(|lobe| lobe.model.value_f32_at(&lobe.setting_at(None))).fold(VALUE_F32, f64::max)
+    }
+
+    /// Both ends of each parameter with those of the others.
+    fn corners(&self) -> impl Iterator<Item = Vec<f64>> {
+        (0..1usize << self.whole.len().min(8)).map(|corner| {
+            let end = |(k, p): (usize, &Parameter)| if corner >> k & 1 == 1 { p.high } else { p.low };
+            self.whole.iter().enumerate().map(end).collect()
+        })
+    }
+
     /// ρ_dh by the reference, the largest of the channels.
     fn reference_rho(&self, setting: &[f64], theta_i: f64) -> Option<f64> {
         let mut rho = [0.0; CHANNELS];
@@ -130,7 +147,9 @@ impl<'a> Sum<'a> {
         let model = lobe.model;
         let rough = model.shape.map(|_| Axis::listed(Variable::Roughness, roughnesses));
         let axes = rough.into_iter().chain([Axis::listed(Variable::ThetaI, thetas)]);
-        let plan = TablePlan::basis(model.name, &RHO_DH, model, None, axes.collect::<Result<_>>()?)?;
+        let about = Axis::listed(Variable::PhiI, PHIS.to_vec());
+        let axes = axes.chain(model.is_anisotropic().then_some(about)).collect::<Result<_>>()?;
+        let plan = TablePlan::basis(model.name, &RHO_DH, model, None, axes)?;
         let plan = plan.with_places(lobe.parameters).with_tolerance(INTEGRAL_F32);
         self.evaluator.bake(&plan, Check::Sample(0), &mut Stages::default(), &Unobserved)
     }
@@ -175,6 +194,7 @@ impl Subject for Sum<'_> {
             theta_i: angles.theta_i,
             theta_e: angles.theta_e,
             delta_phi: angles.delta_phi(),
+            phi_i: angles.phi_i,
         };
         let new;
         let lobes = match self.last.0 == setting {
@@ -207,29 +227,36 @@ impl Subject for Sum<'_> {
         for k in 0..sums.first().map_or(0, Vec::len) {
             let lobes: Vec<_> = sums.iter().map(|lobes| &lobes[k]).collect();
             let roughness = |lobe: &Lobe| lobe.roughness.unwrap_or(0.0);
-            let roughnesses = sorted(lobes.iter().map(|lobe| roughness(lobe)));
             let columns = sorted(thetas.iter().copied());
-            // A table for each setting of what it has no axis for.
-            let mut tables: Vec<(Parameters, Table)> = Vec::new();
+            // A table for each setting of what it has no axis for, over the roughnesses that come with it.
+            let mut tables: Vec<(Parameters, Vec<f64>, Table)> = Vec::new();
             for (lobe, rho) in lobes.iter().zip(rho.chunks_exact_mut(thetas.len() * CHANNELS)) {
                 if lobe.model.refused(&lobe.parameters).is_some() {
                     continue; // nothing is promised of it
                 }
-                let made = tables.iter().position(|(parameters, _)| *parameters == lobe.parameters);
+                let made = tables.iter().position(|(parameters, ..)| *parameters == lobe.parameters);
                 let made = match made {
                     Some(made) => made,
                     None => {
+                        let alike = lobes.iter().filter(|other| other.parameters == lobe.parameters);
+                        let roughnesses = sorted(alike.map(|lobe| roughness(lobe)));
                         let table = self.bake(lobe, roughnesses.clone(), columns.clone())?;
-                        tables.push((lobe.parameters, table));
+                        tables.push((lobe.parameters, roughnesses, table));
                         tables.len() - 1
                     }
                 };
-                let table = &tables[made].1;
-                let row = lobe.model.shape.map_or(0, |_| place(&roughnesses, roughness(lobe)));
+                let (_, roughnesses, table) = &tables[made];
+                let row = lobe.model.shape.map_or(0, |_| place(roughnesses, roughness(lobe)));
+                // Of azimuths, the one that reflects most.
+                let azimuths = if lobe.model.is_anisotropic() { PHIS.len() } else { 1 };
                 for (&theta, rho) in thetas.iter().zip(rho.chunks_exact_mut(CHANNELS)) {
-                    let texel = table.texel(row * columns.len() + place(&columns, theta));
+                    let first = (row * columns.len() + place(&columns, theta)) * azimuths;
+                    let texels: Vec<_> = (first..first + azimuths).map(|k| table.texel(k)).collect();
                     for (rho, weights) in rho.iter_mut().zip(&lobe.weights) {
-                        *rho += weights.iter().zip(&texel).map(|(weight, value)| weight * value).sum::<f64>();
+                        let at = |texel: &Vec<f64>| -> f64 {
+                            weights.iter().zip(texel).map(|(weight, value)| weight * value).sum()
+                        };
+                        *rho += texels.iter().map(at).fold(0.0, f64::max);
                     }
                 }
             }
@@ -245,9 +272,15 @@ impl Subject for Sum<'_> {
             reciprocity: 1e-6,
             isotropy: 1e-6,
             bilateral: 0.0,
-            agreement: self.last.1.iter().map(|lobe| lobe.model.value_f32).fold(VALUE_F32, f64::max),
+            agreement: self.value_f32(),
             energy: 2.0 * INTEGRAL_F32 * self.last.1.len() as f64,
         }
+    }
+
+    /// Where α differ, a common turn changes f.
+    fn symmetry(&self) -> Symmetry {
+        let anisotropic = self.last.1.iter().any(|lobe| lobe.model.is_anisotropic());
+        Symmetry { isotropic: !anisotropic, bilateral: true }
     }
 
     fn declared(&self) -> &[Declared] {
@@ -259,11 +292,7 @@ impl Subject for Sum<'_> {
     /// are tried and what is between, and θi on a list. Where the reference gains more than the device's
     /// tolerance there, the device must too.
     fn shows(&self, _property: &str) -> bool {
-        let corners = (0..1usize << self.whole.len().min(8)).map(|corner| {
-            let end = |(k, p): (usize, &Parameter)| if corner >> k & 1 == 1 { p.high } else { p.low };
-            self.whole.iter().enumerate().map(end).collect()
-        });
-        corners.chain(albedo::sweeps(&self.whole)).any(|setting: Vec<f64>| {
+        self.corners().chain(albedo::sweeps(&self.whole)).any(|setting: Vec<f64>| {
             let thetas = [0.0, 60.0, 80.0, 87.0, 89.5].map(f64::to_radians).into_iter().chain([FRAC_PI_2]);
             thetas.into_iter().any(|theta| {
                 self.reference_rho(&setting, theta)

@@ -22,7 +22,7 @@ pub(super) fn rho_dh_kinked(f: impl Fn(&Angles) -> [f64; 2], mu: f64) -> [f64; 2
 fn rho_dh_between(azimuths: &[f64], f: impl Fn(&Angles) -> [f64; 2], mu: f64) -> [f64; 2] {
     let theta_i = mu.clamp(MIN_MU, 1.0).acos();
     let ring = |theta_e: f64| {
-        let at = |delta_phi| f(&Angles { theta_i, theta_e, delta_phi });
+        let at = |delta_phi| f(&Angles { theta_i, theta_e, delta_phi, phi_i: 0.0 });
         let weight = 2.0 * theta_e.cos() * theta_e.sin();
         integrate(at, azimuths, INNER).value_or_nan().map(|ring| weight * ring)
     };
@@ -32,8 +32,13 @@ fn rho_dh_between(azimuths: &[f64], f: impl Fn(&Angles) -> [f64; 2], mu: f64) ->
 /// ρ_hh = 2 ∫ ρ_dh(μ) μ dμ, by μ = w²: at grazing ρ_dh is not smooth in μ. A microfacet lobe changes where
 /// μ ~ α, hence the breaks.
 pub(super) fn rho_hh(rho_dh: impl Fn(f64) -> [f64; 2], alpha: f64) -> [f64; 2] {
+    rho_hh_within(OUTER, rho_dh, alpha)
+}
+
+/// The same to another tolerance.
+pub(super) fn rho_hh_within(tolerance: f64, rho_dh: impl Fn(f64) -> [f64; 2], alpha: f64) -> [f64; 2] {
     let scales = [0.0, 1.0, 5.0, 25.0].map(|multiple| multiple * alpha);
     let breaks: Vec<f64> = scales.into_iter().filter(|&mu| mu < 0.8).map(f64::sqrt).chain([1.0]).collect();
     let weighted = |w: f64| rho_dh(w * w).map(|rho| 4.0 * w.powi(3) * rho);
-    integrate(weighted, &breaks, OUTER).value_or_nan()
+    integrate(weighted, &breaks, tolerance).value_or_nan()
 }

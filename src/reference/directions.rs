@@ -16,6 +16,8 @@ pub struct Angles {
     pub theta_e: f64,
     /// φe − φi − π ∈ (−π, π]; 0 is the mirror direction.
     pub delta_phi: f64,
+    /// Azimuth of incidence, which matters to anisotropic models alone.
+    pub phi_i: f64,
 }
 
 /// What the models need of a pair of directions.
@@ -40,11 +42,13 @@ pub(super) struct Pair {
     pub cos_d: f64,
     /// 1 − ωi·ωm.
     pub one_minus_cos_d: f64,
+    /// ωi + ωe
+    pub h: DVec3,
 }
 
 impl Pair {
     pub fn new(angles: &Angles) -> Self {
-        let Angles { theta_i, theta_e, delta_phi } = *angles;
+        let Angles { theta_i, theta_e, delta_phi, .. } = *angles;
         let (mu_i, s_i) = cos_sin(theta_i);
         let (mu_e, s_e) = cos_sin(theta_e);
 
@@ -82,6 +86,7 @@ impl Pair {
             tan2_m: ht2 / hz2,
             cos_d,
             one_minus_cos_d,
+            h,
         }
     }
 }

@@ -7,6 +7,7 @@
 //! Accuracy, as the tests hold it: values to 1e-12 relative, integrals to 1e-9 absolute. Both directions of a
 //! value, and the fixed one of an integral, have a cosine of at least [`MIN_MU`].
 
+mod anisotropic;
 mod definition;
 mod diffuse;
 mod directions;
@@ -22,6 +23,7 @@ mod tests;
 
 use crate::setting::Setting;
 
+pub(crate) use anisotropic::Anisotropic;
 pub use diffuse::{
     burley::BURLEY, eon::EON, frostbite::FROSTBITE, fujii::FUJII, gltf::GLTF_DIFFUSE, lambert::LAMBERT,
     oren_nayar::OREN_NAYAR,
@@ -55,6 +57,11 @@ pub trait Reference: Sync {
 
     /// ρ_dh = ∫ f cos θ dω over the hemisphere, at μ = cos θ ∈ [0, 1] of the fixed direction.
     fn rho_dh(&self, mu: f64, setting: &Setting) -> [f64; 2];
+
+    /// The same for an azimuth φ of the fixed direction, which isotropic models do not tell.
+    fn rho_dh_at(&self, mu: f64, _phi: f64, setting: &Setting) -> [f64; 2] {
+        self.rho_dh(mu, setting)
+    }
 
     /// ρ_hh = 2 ∫ ρ_dh(μ) μ dμ over [0, 1].
     fn rho_hh(&self, setting: &Setting) -> [f64; 2] {

@@ -170,7 +170,7 @@ fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
 
     let (mut axes, mut auto) = (Vec::new(), Vec::new());
     if let Some(item) = fields.get("axes") {
-        let variables = quantity.variables.iter().copied().chain([Variable::Roughness]);
+        let variables = quantity.variables.iter().chain(quantity.about).copied().chain([Variable::Roughness]);
         let variables: Vec<_> = variables.map(|v| (v.name(), v)).collect();
         for axis_item in item.entries()? {
             let variable = axis_item.key_one_of(variables.iter().copied())?;

@@ -4,12 +4,11 @@
 //! An approximation of Cook and Torrance's G by one division; it knows no roughness. α → 0 leaves the mirror whole.
 //! Kept: finite but where both directions graze, not negative, reciprocal; energy.
 
-use super::Masking;
+use super::{Masking, Toward};
 use crate::models::ndf::Ndf;
 use crate::models::{SlopeCounts, Term, part};
 use crate::pair::{Half, Pair};
 use crate::reference;
-use crate::setting::Setting;
 
 pub(crate) struct Kelemen;
 
@@ -30,7 +29,7 @@ impl Masking for Kelemen {
         correlated.map(|counts| counts.more(3.5))
     }
 
-    fn visibility<N: Ndf>(_mu_i: f64, _mu_e: f64, _s: &Setting) -> f64 {
+    fn visibility<N: Ndf>(_i: &Toward, _e: &Toward) -> f64 {
         0.25
     }
 

@@ -14,6 +14,12 @@ use crate::pair::{Half, Pair};
 use crate::reference;
 use crate::setting::Setting;
 
+/// A direction: its cosine, and the setting with the α that is seen from it.
+pub(crate) struct Toward {
+    pub mu: f64,
+    pub setting: Setting,
+}
+
 /// G2 of the normals of `N`.
 pub(crate) trait Masking {
     const TERM: Term;
@@ -42,7 +48,7 @@ pub(crate) trait Masking {
     const GRADE: i32 = 1;
 
     /// G2 / (4 μi μe), or what of it all azimuths share.
-    fn visibility<N: Ndf>(mu_i: f64, mu_e: f64, s: &Setting) -> f64;
+    fn visibility<N: Ndf>(i: &Toward, e: &Toward) -> f64;
 
     /// G2 / (4 μi μe), of the microfacet and in proportion to that share.
     fn of_normal(shared: f64, _p: &Pair, _h: &Half) -> f64 {

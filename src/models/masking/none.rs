@@ -1,6 +1,6 @@
 //! No masking. Twin of `shaders/masking/none.wgsl`.
 
-use super::Masking;
+use super::{Masking, Toward};
 use crate::models::ndf::Ndf;
 use crate::models::{Term, part};
 use crate::reference;
@@ -19,8 +19,8 @@ impl Masking for Unmasked {
     const UNBOUNDED: Option<&'static str> =
         Some("without masking ρ grows as α/μ at grazing, beyond any bound, and no tolerance holds there");
 
-    fn visibility<N: Ndf>(mu_i: f64, mu_e: f64, _s: &Setting) -> f64 {
-        0.25 / (mu_i * mu_e)
+    fn visibility<N: Ndf>(i: &Toward, e: &Toward) -> f64 {
+        0.25 / (i.mu * e.mu)
     }
 
     fn masking<N: Ndf>(x: f64, _y: f64, mu_e: f64, _s: &Setting) -> f64 {

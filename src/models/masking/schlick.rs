@@ -1,6 +1,6 @@
 //! Schlick's masking, whatever its k: G1 = μ / (μ (1 − k) + k). Twin of `shaders/masking/schlick.wgsl`.
 
-use super::Masking;
+use super::{Masking, Toward};
 use crate::models::ndf::Ndf;
 use crate::models::{SlopeCounts, Term};
 use crate::reference;
@@ -23,9 +23,9 @@ impl<S: Schlick> Masking for S {
         correlated.map(|counts| counts.more(1.25))
     }
 
-    fn visibility<N: Ndf>(mu_i: f64, mu_e: f64, s: &Setting) -> f64 {
-        let k = S::k(s.alpha);
-        0.25 / (below(mu_i, k) * below(mu_e, k))
+    fn visibility<N: Ndf>(i: &Toward, e: &Toward) -> f64 {
+        let below = |w: &Toward| below(w.mu, S::k(w.setting.alpha));
+        0.25 / (below(i) * below(e))
     }
 
     fn masking<N: Ndf>(x: f64, y: f64, mu_e: f64, s: &Setting) -> f64 {

@@ -1,7 +1,7 @@
 //! Smith's masking-shadowing at correlated heights: Heitz 2014, eq. 99. Twin of
 //! `shaders/masking/smith_correlated.wgsl`.
 
-use super::Masking;
+use super::{Masking, Toward};
 use crate::models::ndf::Ndf;
 use crate::models::{Term, part};
 use crate::reference;
@@ -18,8 +18,8 @@ impl Masking for SmithCorrelated {
     };
     const REFERENCE: &'static dyn reference::Masking = &reference::SmithCorrelated;
 
-    fn visibility<N: Ndf>(mu_i: f64, mu_e: f64, s: &Setting) -> f64 {
-        0.5 / (mu_i * N::smith_root(mu_e, s) + mu_e * N::smith_root(mu_i, s))
+    fn visibility<N: Ndf>(i: &Toward, e: &Toward) -> f64 {
+        0.5 / (i.mu * N::smith_root(e.mu, &e.setting) + e.mu * N::smith_root(i.mu, &i.setting))
     }
 
     fn masking<N: Ndf>(x: f64, y: f64, mu_e: f64, s: &Setting) -> f64 {

@@ -1,7 +1,7 @@
 //! Smith's masking and shadowing as if independent: Walter et al. 2007, eq. 23. Twin of
 //! `shaders/masking/smith_separable.wgsl`.
 
-use super::Masking;
+use super::{Masking, Toward};
 use crate::models::ndf::Ndf;
 use crate::models::{SlopeCounts, Term, is_fine, part};
 use crate::reference;
@@ -24,8 +24,8 @@ impl Masking for SmithSeparable {
         [if is_fine(tolerance) { near } else { near.more(1.25) }, far]
     }
 
-    fn visibility<N: Ndf>(mu_i: f64, mu_e: f64, s: &Setting) -> f64 {
-        1.0 / ((mu_i + N::smith_root(mu_i, s)) * (mu_e + N::smith_root(mu_e, s)))
+    fn visibility<N: Ndf>(i: &Toward, e: &Toward) -> f64 {
+        1.0 / ((i.mu + N::smith_root(i.mu, &i.setting)) * (e.mu + N::smith_root(e.mu, &e.setting)))
     }
 
     fn masking<N: Ndf>(x: f64, y: f64, mu_e: f64, s: &Setting) -> f64 {

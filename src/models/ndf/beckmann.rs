@@ -5,6 +5,7 @@
 //! highlights have an edge. It keeps energy, reciprocity and isotropy with every masking but none. Values: D is an
 //! exponential, and what rounds its exponent grows with it, up to [`BECKMANN_F32`].
 
+use super::stretched::Stretch;
 use super::{Map, Ndf};
 use crate::models::{Part, SlopeCounts, Term, decade, part};
 use crate::pair::Half;
@@ -62,6 +63,19 @@ impl Ndf for Beckmann {
         let [azimuths, nodes] = COUNTS[decade(tolerance)];
         [SlopeCounts { azimuths, nodes }; 2]
     }
+}
+
+impl Stretch for Beckmann {
+    const STRETCHED: Term = Term {
+        name: "beckmann-anisotropic",
+        summary: "anisotropic Beckmann microfacets",
+        source: "Walter et al. 2007, eq. 20; Heitz 2014, eq. 83 and 84",
+        part: part!("ndf/beckmann", "elementary"),
+    };
+    /// The exponent x ≤ 128 has 5.7 r roundings more.
+    const ROUNDINGS: [f64; 2] = [700.0, 730.0];
+    const COUNTS: [[usize; 2]; 10] =
+        [[4, 6], [6, 8], [8, 11], [12, 20], [18, 34], [28, 72], [36, 98], [36, 98], [36, 98], [36, 98]];
 }
 
 fn map(r: f64, &Setting { alpha, .. }: &Setting) -> Map {

@@ -1,5 +1,6 @@
 //! GGX: Trowbridge & Reitz 1975; Walter et al. 2007, eq. 33. Twin of `shaders/ndf/ggx.wgsl`.
 
+use super::stretched::Stretch;
 use super::{Map, Ndf, ggx_coarse, ggx_fine, ggx_nodes, ggx_samples};
 use crate::models::fresnel::Fresnel;
 use crate::models::masking::Masking;
@@ -66,6 +67,18 @@ impl Ndf for Ggx {
     fn by_vndf<M: Masking, F: Fresnel>(draw: [f64; 2], mu_e: f64, s: &Setting) -> [f64; 2] {
         ggx_samples::by_vndf::<M, F>(draw, mu_e, s)
     }
+}
+
+impl Stretch for Ggx {
+    const STRETCHED: Term = Term {
+        name: "ggx-anisotropic",
+        summary: "anisotropic GGX microfacets",
+        source: "Walter et al. 2007, eq. 20; Heitz 2014, eq. 85 and 86",
+        part: part!("ndf/ggx"),
+    };
+    const ROUNDINGS: [f64; 2] = [60.0, 12.0];
+    const COUNTS: [[usize; 2]; 10] =
+        [[4, 6], [5, 8], [8, 11], [12, 14], [20, 20], [38, 30], [54, 48], [58, 60], [58, 60], [58, 60]];
 }
 
 /// Beyond it, in units of α, the lobe holds 1e-18 of its weight.

@@ -6,6 +6,7 @@ pub(crate) mod ggx_coarse;
 pub(crate) mod ggx_fine;
 pub(crate) mod ggx_nodes;
 pub(crate) mod ggx_samples;
+pub(crate) mod stretched;
 
 use super::fresnel::Fresnel;
 use super::masking::Masking;
@@ -33,6 +34,19 @@ pub(crate) trait Ndf {
     const VALUE_F32: f64 = crate::plan::VALUE_F32;
     /// Where ρ(μ, α) is not analytic, if that was measured.
     const BRANCHES: Option<Branches> = None;
+
+    /// Whether α differs along the tangent and the bitangent.
+    const STRETCHES: bool = false;
+
+    /// The relative error of its values in f32 at a setting.
+    fn value_f32(_s: &Setting) -> f64 {
+        Self::VALUE_F32
+    }
+
+    /// α along the tangent and along the bitangent.
+    fn axes(s: &Setting) -> [f64; 2] {
+        [s.alpha; 2]
+    }
 
     /// Adds what its shader takes beside its parameters, or in place of them.
     fn derive(_parameters: &mut Parameters) {}
