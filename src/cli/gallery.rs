@@ -114,6 +114,14 @@ fn entries() -> Result<Vec<Entry>> {
             });
         }
     }
+    let sets = ["roughness=0.3", "fresnel=thin-film", "f0=0.5", "thickness=150,300,450,600,900"];
+    entries.push(Entry {
+        stem: format!("{}_thin-film", model.name),
+        title: format!("{} under a thin film", model.name),
+        summary: "What the thickness of a film does to the colours of a bright base".into(),
+        facts: Vec::new(),
+        view: View::of_model(model.name, &sets.map(String::from))?,
+    });
     Ok(entries)
 }
 
