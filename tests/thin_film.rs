@@ -208,23 +208,24 @@ fn f_is_positive_and_bounded() {
     let mus: Vec<_> = (0..=200).map(|k| f64::from(k) / 200.0).collect();
     let (mut least, mut most) = ([f64::INFINITY; 3], [0.0_f64; 3]);
     let bound = under("mirror").rho_bound;
+    // Where a search over millions of films found the most.
+    let mut films =
+        vec![[375.1, 1.398, 0.7605, 0.0], [441.5, 1.2334, 0.836, 1.0], [172.7, 1.4435, 0.8586, 2.0]];
     for (k, u) in golden(300, 0.3).into_iter().enumerate() {
         let fraction = |step: f64| (step * k as f64).fract();
-        for channel in 0..3 {
-            let film = [
-                40.0 + 900.0 * u * u,
-                1.1 + 0.9 * fraction(0.754_877_666),
-                fraction(0.569_840_291).powi(2),
-                channel as f64,
-            ];
-            for value in f(&Evaluator::Cpu, film, &mus) {
-                (least[channel], most[channel]) = (least[channel].min(value), most[channel].max(value));
-            }
+        let eta = 1.1 + 0.9 * fraction(0.754_877_666);
+        let f0 = fraction(0.569_840_291).powi(2);
+        films.extend([0.0, 1.0, 2.0].map(|channel| [40.0 + 900.0 * u * u, eta, f0, channel]));
+    }
+    for film in films {
+        let (least, most) = (&mut least[film[3] as usize], &mut most[film[3] as usize]);
+        for value in f(&Evaluator::Cpu, film, &mus) {
+            (*least, *most) = (least.min(value), most.max(value));
         }
     }
     println!("F from {least:?} to {most:?}");
     assert!(least.iter().all(|&f| f > 1e-6) && most.iter().all(|&f| f <= bound), "{least:?}, {most:?}");
-    assert!(most[0] > 1.26 && most[1] > 1.04 && most[2] > 1.04, "{most:?}: the bound is too wide");
+    assert!(most[0] > 1.28 && most[1] > 1.05 && most[2] > 1.05, "{most:?}: the bound is too wide");
 }
 
 // ---- Values and integrals --------------------------------------------------------------------------
@@ -281,7 +282,7 @@ fn shaders_are_valid() {
         let model = under(name);
         let kernels = match name {
             "mirror" => &[Kernel::Product, Kernel::Analytic][..],
-            _ => &[Kernel::Values, Kernel::Points, Kernel::Slopes, Kernel::FineSlopes],
+            _ => &[Kernel::Values, Kernel::Slopes, Kernel::FineSlopes],
         };
         for &kernel in kernels {
             for precision in [Precision::F32, Precision::F64] {

@@ -352,7 +352,12 @@ mod tests {
             // Terms do not know of each other: each with the others' defaults tells most.
             let telling =
                 model.terms().iter().filter(|(_, there, own)| own.name != there[0].name).count() < 2;
-            let count = if telling { 300 / extremes.len().min(6) } else { 12 };
+            let count = match (film, telling) {
+                (true, true) => 8,
+                (true, false) => 1,
+                (false, true) => 300 / extremes.len().min(6),
+                (false, false) => 12,
+            };
             let worst: Vec<[f64; 9]> = (0..count * extremes.len())
                 .into_par_iter()
                 .map(|n| {

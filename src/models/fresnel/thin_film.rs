@@ -237,8 +237,11 @@ fn sensitivity(channel: f64) -> [f64; 4] {
     std::array::from_fn(|k| r * RED[k] + (1.0 - r - b) * GREEN[k] + b * BLUE[k])
 }
 
-/// The relative error of its values in f32.
-const FILM_F32: f64 = 5e-4;
+/// What it adds to the relative error of values in f32. Roundings leave I off by 36 u, u = 2⁻²⁴, measured over 6·10⁶ films
+/// and angles: ten of the phase, 2π times the turns that the response lets be seen (τ exp(−aτ²) ≤ 1.85), under weights of
+/// the red channel of 5.3 in all; and c by as much as that of a value is off. F'/F = 1/√(I² + ε²) ≤ 256 where F is the
+/// least: 32 u of I count 256 times. Measured, both together: 4826 u in R, 304 u in G.
+const FILM_F32: f64 = 32.0 * 256.0 / (1 << 24) as f64;
 
 /// Where the film's index is its own, nm.
 const FADE: f64 = 0.03;
