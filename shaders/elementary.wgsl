@@ -35,6 +35,26 @@ fn half_power(n: vec4u) -> real4 {
     return p * select(one, real4(5.421010862427522e-20), (n & vec4u(64u)) != vec4u());
 }
 
+/// cos 2πx, x in turns, of which whole ones are taken off exactly: 1 − 2 sin²(πt), the sine by its Taylor series for at
+/// most π/2, whose rest is 1e-18.
+fn cos_turns(x: real4) -> real4 {
+    let t = x - round(x);
+    let y = t * t;
+    var p = real4(5.392664662608125e-10); // π²¹/21!
+    p = fma(p, y, real4(-2.2948428997269856e-8));
+    p = fma(p, y, real4(7.952054001475508e-7));
+    p = fma(p, y, real4(-2.1915353447830204e-5));
+    p = fma(p, y, real4(4.6630280576761234e-4));
+    p = fma(p, y, real4(-7.370430945714348e-3));
+    p = fma(p, y, real4(8.214588661112819e-2));
+    p = fma(p, y, real4(-0.5992645293207919));
+    p = fma(p, y, real4(2.550164039877345));
+    p = fma(p, y, real4(-5.167712780049969));
+    p = fma(p, y, real4(3.141592653589793));
+    let sine = p * t;
+    return 1.0 - 2.0 * sine * sine;
+}
+
 /// e^(a²) erfc a for a = x/y, x ≥ 0, y ≥ 0, not both 0: a polynomial in (3 − a)/(3 + a), by interpolation at 23
 /// Chebyshev points; off by 5e-17.
 fn erfcx(x: real4, y: real4) -> real4 {

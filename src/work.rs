@@ -86,7 +86,12 @@ impl Work {
             Evaluation::Value => Self { alphas, kind: values(table) },
             Evaluation::Directional => integrals(table, lobe, alphas, &directions(table), &[1.0]),
             Evaluation::Hemispherical => {
-                let nodes = gauss_legendre(MEAN_NODES[decade(table.rule_tolerance())]);
+                let tolerance = table.rule_tolerance();
+                let settings = lobe.settings(&alphas);
+                let more =
+                    |s: &Setting| lobe.model.microfacet.map_or(0, |made| (made.mean_nodes)(s, tolerance));
+                let more = settings.iter().map(more).max().unwrap_or(0);
+                let nodes = gauss_legendre(MEAN_NODES[decade(tolerance)] + more);
                 let [thetas, weights]: [Vec<_>; 2] = match lobe.model.integral {
                     // ρ_hh = ∫ ρ sin 2θ dθ: a kink at θe = θi leaves odd powers of sin θ in ρ.
                     Integral::Kinked(_) => {

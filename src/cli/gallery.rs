@@ -7,7 +7,7 @@ use crate::bake::{Evaluator, Observer};
 use crate::error::Result;
 use crate::files::{MOST_SETTINGS, Radius, TableSet, escape};
 use crate::gpu::DeviceChoice;
-use crate::models::{FRESNELS, MASKINGS, MODELS, Term};
+use crate::models::{FRESNELS, MASKINGS, MODELS, Model, Term};
 use serde_json::{Map, Value, json};
 use std::f64::consts::FRAC_PI_4;
 use std::path::PathBuf;
@@ -81,10 +81,6 @@ pub fn run(args: &Args) -> Result<()> {
 fn entries() -> Result<Vec<Entry>> {
     let mut entries = Vec::new();
     for model in MODELS {
-        let parameters = details::parameters(model).into_iter().map(|p| {
-            let default = p.default.map_or(String::new(), |default| format!(", default {default}"));
-            format!("{}: {} ({}{default})", p.name, p.what, p.range)
-        });
         let view = View::of_model(model.name, &[])?;
         entries.push(Entry {
             stem: view.stem(),
@@ -92,7 +88,7 @@ fn entries() -> Result<Vec<Entry>> {
             summary: model.summary.into(),
             facts: vec![
                 ("Source", vec![model.source.into()]),
-                ("Parameters", parameters.collect()),
+                ("Parameters", parameters(model)),
                 ("Promises", details::promises(model)),
             ],
             view,
@@ -114,7 +110,28 @@ fn entries() -> Result<Vec<Entry>> {
             });
         }
     }
+    let film = model.with_terms(None, Some("thin-film"))?;
+    let sets = ["roughness=0.3", "f0=0.5", "thickness=150,300,450,600,900"];
+    entries.push(Entry {
+        stem: format!("{}_thin-film", model.name),
+        title: format!("{} under a thin film", model.name),
+        summary: "What the thickness of a film does to the colours of a bright base".into(),
+        facts: vec![
+            ("Source", vec![film.source.into()]),
+            ("Parameters", parameters(film)),
+            ("Promises", details::promises(film)),
+        ],
+        view: View::of_model(film.name, &sets.map(String::from))?,
+    });
     Ok(entries)
+}
+
+fn parameters(model: &Model) -> Vec<String> {
+    let line = |p: details::Parameter| {
+        let default = p.default.map_or(String::new(), |default| format!(", default {default}"));
+        format!("{}: {} ({}{default})", p.name, p.what, p.range)
+    };
+    details::parameters(model).into_iter().map(line).collect()
 }
 
 /// Stages all files; the manifest lists them.

@@ -76,7 +76,15 @@ pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize, precision
     }
     let add = matches!(kernel, Kernel::AddValues | Kernel::AddPoints | Kernel::AddSum);
     source += &format!("const CHANNELS = {channels}u;\nconst ADD = {add};\n");
-    let mut add = |part: &Part| source += &format!("\n// ---- {}\n{}", part.name, part.wgsl);
+    let mut add = |part: &Part| {
+        source += &format!("\n// ---- {}\n{}", part.name, part.wgsl);
+        for (name, wgsl) in part.shared {
+            let heading = format!("\n// ---- with {name}\n");
+            if !source.contains(&heading) {
+                source += &(heading + wgsl);
+            }
+        }
+    };
     add(&part!("kernel/job"));
     if let Some(model) = model {
         add(&part!("pair"));

@@ -36,9 +36,9 @@ impl<F: Fresnel> Made<F> {
         shape: None,
         parameters: F::PARAMETERS,
         derive: F::derive,
-        rho_bound: 1.0,
+        rho_bound: F::BOUND,
         parts: &Self::PARTS,
-        value_f32: VALUE_F32,
+        value_f32: VALUE_F32 + F::VALUE_F32,
         integral: Integral::Delta(|mu, s| F::fresnel(mu, 1.0 - mu, s)),
         lobe: |p, a, s| F::fresnel(p.mu_i, 1.0 - p.mu_i, s).map(|f| f * p.bin * a.bin),
         reference: Some(&Self::REFERENCE),
@@ -49,8 +49,9 @@ impl<F: Fresnel> Made<F> {
         masking: None,
         fresnel: F::TERM,
         metals: F::METALS,
-        value_f32: |_| crate::plan::VALUE_F32,
         refused: F::refused,
+        mean_nodes: F::mean_nodes,
+        value_f32: |_| crate::plan::VALUE_F32,
     };
     const PARTS: [Part; 2] = [F::TERM.part, TERM.part];
     const REFERENCE: reference::Mirror = reference::Mirror { fresnel: F::REFERENCE };

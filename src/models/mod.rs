@@ -101,6 +101,8 @@ pub struct Part {
     pub name: &'static str,
     /// Its text.
     pub wgsl: &'static str,
+    /// Files that it shares with other parts, of which a module has one copy: path and text.
+    pub shared: &'static [(&'static str, &'static str)],
 }
 
 /// How a model's hemispherical integrals are done by the `warped` rule.
@@ -275,6 +277,14 @@ impl Model {
         parameters
     }
 
+    /// The same in R, G or B: a parameter called `channel` is the channel's number.
+    pub(crate) fn defaults_in(&self, channel: usize) -> Parameters {
+        let mut parameters = self.defaults();
+        let own = self.parameters.iter().filter(|parameter| parameter.name == "channel");
+        own.for_each(|parameter| parameters[parameter.place] = channel as f64);
+        parameters
+    }
+
     /// The model's own measure of a roughness; 0 where it takes none.
     pub fn measure(&self, roughness: f64) -> f64 {
         self.shape.map_or(0.0, |shape| shape.measure(roughness))
@@ -344,10 +354,10 @@ macro_rules! part {
     ($name:literal $(, $shared:literal)*) => {
         $crate::models::Part {
             name: $name,
-            wgsl: concat!(
-                include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $name, ".wgsl"))
-                $(, "\n", include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $shared, ".wgsl")))*
-            ),
+            wgsl: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $name, ".wgsl")),
+            shared: &[
+                $(($shared, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $shared, ".wgsl")))),*
+            ],
         }
     };
 }

@@ -481,7 +481,7 @@ pub(crate) fn constant_lobes(material: &Material) -> Result<Vec<Lobe>, String> {
 fn settings_of(lobe: &MaterialLobe, model: &Model) -> Vec<(Parameters, [bool; 3])> {
     let mut settings: Vec<(Parameters, [bool; 3])> = Vec::new();
     for channel in 0..3 {
-        let mut parameters = model.defaults();
+        let mut parameters = model.defaults_in(channel);
         for parameter in model.parameters.iter() {
             if let Some((_, given)) = lobe.parameters.iter().find(|(name, _)| name == parameter.name) {
                 parameters[parameter.place] = given[channel];

@@ -31,6 +31,7 @@ pub use diffuse::{
 pub use directions::{Angles, MIN_MU};
 pub(crate) use fresnel::{
     Fresnel, conductor::Conductor, dielectric::Dielectric, f82::F82, none::Constant, schlick::Schlick,
+    thin_film::ThinFilm,
 };
 pub(crate) use masking::{
     Masking,

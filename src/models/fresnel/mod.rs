@@ -6,6 +6,7 @@ pub(crate) mod f82;
 pub(crate) mod metals;
 pub(crate) mod none;
 pub(crate) mod schlick;
+pub(crate) mod thin_film;
 
 use super::{Component, Metal, Parameter, SlopeCounts, Term, decade, is_fine};
 use crate::reference;
@@ -20,6 +21,10 @@ pub(crate) trait Fresnel {
     /// NDF does, and tables may be spread from few integrals.
     const POLYNOMIAL: bool = false;
     const PARAMETERS: &'static [Parameter] = &[];
+    /// The most that F is.
+    const BOUND: f64 = 1.0;
+    /// What it adds to the relative error that values have in f32 with Schlick's.
+    const VALUE_F32: f64 = 0.0;
 
     /// Names that stand for parameters.
     const METALS: &'static [Metal] = &[];
@@ -35,6 +40,16 @@ pub(crate) trait Fresnel {
     /// What it takes where cos φ > 0, the side on which ωi·ωm comes near 0, and Schlick takes so much.
     fn near(schlick: SlopeCounts, _s: &Setting, _tolerance: f64) -> SlopeCounts {
         schlick
+    }
+
+    /// The same where cos φ < 0.
+    fn far(schlick: SlopeCounts, _s: &Setting, _tolerance: f64) -> SlopeCounts {
+        schlick
+    }
+
+    /// How many more nodes in μ its mean over directions takes than Schlick's.
+    fn mean_nodes(_s: &Setting, _tolerance: f64) -> usize {
+        0
     }
 
     /// The components for c = ωi·ωm and x = 1 − c.

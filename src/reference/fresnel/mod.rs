@@ -6,6 +6,7 @@ pub(super) mod dielectric;
 pub(super) mod f82;
 pub(super) mod none;
 pub(super) mod schlick;
+pub(super) mod thin_film;
 
 use super::quadrature::integrate;
 use crate::setting::Setting;
