@@ -83,8 +83,12 @@ mod tests {
             for tolerance in (1..=10).map(|decade| 10f64.powi(-decade)) {
                 for quantity in [&RHO_DH, &RHO_HH] {
                     let rough = model.shape.map(|_| Axis::natural(Variable::Roughness, 256).unwrap());
-                    let theta = (quantity == &RHO_DH).then(|| Axis::natural(Variable::ThetaI, 256).unwrap());
-                    let axes = rough.into_iter().chain(theta).collect();
+                    let about = quantity.variables(model.is_anisotropic());
+                    let of = |&variable: &Variable| {
+                        let count = if variable == Variable::PhiI { 3 } else { 256 };
+                        Axis::natural(variable, count).unwrap()
+                    };
+                    let axes = rough.into_iter().chain(about.iter().map(of)).collect();
                     let plan = TablePlan::basis("t", quantity, model, None, axes).unwrap();
                     let plan = plan.with_tolerance(tolerance);
                     let turns = turns(&Work::new(&plan, &plan.lobes[0]));

@@ -18,10 +18,13 @@ pub use microfacet::{FRESNELS, MASKINGS, MICROFACETS, MIRRORS, Microfacet};
 pub use shape::{Parameter, Shape};
 
 use crate::error::{Error, Result};
+use crate::gpu::{Kernel, compose, validate};
 use crate::mapped::Map;
 use crate::pair::{Azimuth, Pair};
+use crate::plan::Precision;
 use crate::reference::Reference;
 use crate::setting::{Parameters, Setting};
+use std::sync::{PoisonError, RwLock};
 
 /// A reflection model: f = a·A + b·B with weights that a material gives and components that the
 /// model evaluates, so that colours never enter a basis.
@@ -41,7 +44,7 @@ pub struct Model {
     /// The rest of its parameters.
     pub parameters: &'static [Parameter],
     /// What shaders get of them: each in its place, and what the host derives in f64 beside it.
-    pub(crate) derive: fn(&mut Parameters),
+    pub derive: fn(&mut Parameters),
     /// The bound on ρ_dh = ∫ (A + B) cos θ dω that the model promises; 1 conserves energy, more is a
     /// [`Violation`] that it declares, and infinity is no promise.
     pub rho_bound: f64,
@@ -53,7 +56,7 @@ pub struct Model {
     pub value_f32: f64,
     /// (A, B) in f64, in the shader's own formulas: the evaluation of the CPU path. Of a delta, its
     /// mean over a cell.
-    pub(crate) lobe: fn(&Pair, &Azimuth, &Setting) -> [f64; 2],
+    pub lobe: fn(&Pair, &Azimuth, &Setting) -> [f64; 2],
     /// The independent f64 reference.
     pub reference: Option<&'static dyn Reference>,
 }
@@ -222,6 +225,30 @@ pub(crate) fn is_fine(tolerance: f64) -> bool {
     tolerance < 0.9e-6
 }
 
+/// Models of an embedder's own.
+static REGISTERED: RwLock<Vec<&'static Model>> = RwLock::new(Vec::new());
+
+/// Makes a model of an embedder's own known by its name, to recipes, plans and checks as any other: see
+/// `examples/custom.rs`.
+///
+/// # Errors
+/// When a model of this name is known, or its shader is not valid.
+pub fn register(model: &'static Model) -> Result<()> {
+    if find(model.name).is_ok() {
+        return Err(Error::input(format!(
+            "there is a model \"{}\" already; give yours another name",
+            model.name
+        )));
+    }
+    if !model.is_delta() {
+        let source = compose(Kernel::Points, Some(model), 1, Precision::F32);
+        let why = |e| Error::input(format!("the shader of \"{}\" does not fit: {e}", model.name));
+        validate(&source, Precision::F32).map_err(why)?;
+    }
+    REGISTERED.write().unwrap_or_else(PoisonError::into_inner).push(model);
+    Ok(())
+}
+
 /// The model of this name, a microfacet model's with its terms included: `ggx-smith-separable-none`.
 pub fn find(name: &str) -> Result<&'static Model> {
     all().find(|m| m.name == name).ok_or_else(|| {
@@ -230,10 +257,11 @@ pub fn find(name: &str) -> Result<&'static Model> {
     })
 }
 
-/// Every model: [`MODELS`], and then their siblings of other terms.
+/// Every model: [`MODELS`], then their siblings of other terms, then those that were [`register`]ed.
 pub fn all() -> impl Iterator<Item = &'static Model> {
     let siblings = MICROFACETS.iter().chain(MIRRORS.iter()).filter(|model| !MODELS.contains(model));
-    MODELS.into_iter().chain(siblings)
+    let registered = REGISTERED.read().unwrap_or_else(PoisonError::into_inner).clone();
+    MODELS.into_iter().chain(siblings).chain(registered)
 }
 
 impl SlopeCounts {
@@ -334,6 +362,13 @@ impl Model {
     pub fn violation(&self) -> Option<Violation> {
         let Self { rho_bound: bound, source, .. } = *self;
         (bound > 1.0).then_some(Violation { property: "energy", bound, source })
+    }
+}
+
+impl Part {
+    /// A part on its own.
+    pub const fn new(name: &'static str, wgsl: &'static str) -> Self {
+        Self { name, wgsl, shared: &[] }
     }
 }
 

@@ -38,12 +38,12 @@ pub struct Parameter {
     /// Where a recipe gives none; `None`: it must.
     pub default: Option<f64>,
     /// Where shaders find it: see [`Parameters`](crate::setting::Parameters).
-    pub(crate) place: usize,
+    pub place: usize,
 }
 
 impl Shape {
     /// α = roughness², the slope of microfacets: α → 0 is the mirror.
-    pub(crate) const ALPHA: Self = Self {
+    pub const ALPHA: Self = Self {
         name: "alpha",
         summary: "the slope of the microfacets, alpha = roughness²",
         unit: "",
@@ -55,10 +55,10 @@ impl Shape {
     };
 
     /// The mean α = √(αx αy) of slopes that differ along the tangent and the bitangent.
-    pub(crate) const ALPHA_XY: Self = Self { anisotropic: true, ..Self::ALPHA };
+    pub const ALPHA_XY: Self = Self { anisotropic: true, ..Self::ALPHA };
 
     /// The roughness as it is.
-    pub(crate) const ROUGHNESS: Self = Self {
+    pub const ROUGHNESS: Self = Self {
         name: "roughness",
         summary: "the roughness as it is",
         unit: "",
@@ -70,7 +70,7 @@ impl Shape {
     };
 
     /// σ of slopes as angles, rad.
-    pub(crate) const SIGMA: Self = Self {
+    pub const SIGMA: Self = Self {
         name: "sigma",
         summary: "the standard deviation of the facets' slope angle, sigma = π/2 · roughness",
         unit: "rad",
@@ -82,7 +82,7 @@ impl Shape {
     };
 
     /// The roughness as it is, as the share of what vanishes with it: f32 has both ends in full as odds alone.
-    pub(crate) const SHARE: Self = Self { odds: true, ..Self::ROUGHNESS };
+    pub const SHARE: Self = Self { odds: true, ..Self::ROUGHNESS };
 
     /// The model's own measure of a roughness.
     pub fn measure(&self, roughness: f64) -> f64 {
