@@ -53,9 +53,9 @@ Examples:
 
 Methods: warped (this project's), gauss and grid (over θ and φ), hammersley (what most bakers do),
 vndf (visible normals) and random. A point is marked * where nothing measured is both faster and
-more exact, and ~ where only the subset was computed and its time is extrapolated. Methods that sample
-are stored as computed; warped is also measured as f16 and unorm16, where these round by less than the
-tolerance: in half the bytes, and with a finer rule that leaves room for the rounding.
+more exact, and ~ where only the subset was computed and its time is extrapolated. Tables are
+stored as computed; those of warped are also measured as f16 and unorm16, where these round by less than
+the tolerance: in half the bytes, by a finer rule that leaves room for the rounding.
 
 Exit codes: 0 success, 2 bad input, 3 no device, 130 interrupted";
 

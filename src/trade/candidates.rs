@@ -73,8 +73,9 @@ pub(super) fn candidates(
     (found, left_out)
 }
 
-/// The formats that a table of a tolerance is stored in: as computed, and those which round by less than it. Without a
-/// tolerance just the first: samples are not worth more than they are.
+/// The formats that a table of a tolerance is stored in: as computed, and those which round by less than it. Rules
+/// without a tolerance leave no room for rounding, and take the first alone. Not only
+/// for rows on the front: which these are depends on the clock.
 pub(super) fn storages(tolerance: Option<f64>) -> impl Iterator<Item = Storage> {
     let narrow = [Storage::F16, Storage::Unorm16].into_iter();
     let fits = move |storage: &Storage| tolerance.is_some_and(|t| storage.rounding(ErrorKind::Absolute) <= t);
