@@ -61,7 +61,8 @@ pub struct Stages {
     pub compose: f64,
     /// Making factors and nodes, compiling pipelines, uploading.
     pub compile: f64,
-    /// Running the kernels, or the CPU path.
+    /// Running the kernels, or the CPU path. Software drivers compile a kernel when it first runs, unless they find it
+    /// in a cache: that is most of a cold start.
     pub dispatch: f64,
     /// Running them again by a finer rule, to certify the first.
     pub certify: f64,
