@@ -249,6 +249,37 @@ fn a_lost_device_is_opened_again() {
     assert!(after == bake(device(), "kept", &Unobserved).unwrap());
 }
 
+/// Tables are checked while the next is computed, and yet named and returned in the plan's order.
+#[test]
+fn tables_come_in_order() {
+    let folder = tempfile::tempdir().unwrap();
+    let recipe = recipe(folder.path(), RECIPE);
+    let names = ["gold", "basis", "dfg"];
+    for evaluator in evaluators() {
+        for (streaming, checked) in [(WHOLE, &names[..]), (SMALL, &names[2..])] {
+            let begun = Begun::default();
+            let out = folder.path().join("out");
+            let baked = bake_recipe(evaluator, &recipe, &out, streaming, Check::Sample(50), &begun).unwrap();
+            assert!(baked.tables.iter().map(|table| table.name.as_str()).eq(names));
+            let steps = begun.0.into_inner().unwrap();
+            let of = |verb: &str| -> Vec<_> {
+                steps.iter().filter_map(|step| step.strip_prefix(verb)).map(str::trim).collect()
+            };
+            assert_eq!((&of("baking")[..], &of("checking")[..]), (&names[..], checked), "{steps:?}");
+        }
+    }
+}
+
+/// What begins.
+#[derive(Default)]
+struct Begun(Mutex<Vec<String>>);
+
+impl Observer for Begun {
+    fn begin(&self, step: &str) {
+        self.0.lock().unwrap().push(step.into());
+    }
+}
+
 /// Does something else once so many tiles are done.
 struct Stop<'a> {
     state: Mutex<(Step, usize)>,

@@ -9,6 +9,7 @@ use gonio::bake::{Evaluator, Unobserved};
 use gonio::gpu::{Kernel, compose, validate};
 use gonio::plan::{Precision, Rule, TablePlan};
 use gonio::quantity::{RHO_DH, RHO_HH, SPLIT_SUM};
+use gonio::storage::Storage;
 use gonio::trade::{Options, measure};
 use std::process::Command;
 
@@ -132,7 +133,7 @@ fn a_measurement_repeats_but_for_its_times() {
         let trade = measure(&plan, device(), &options, &Unobserved).unwrap();
         let points = trade.points.iter();
         points
-            .map(|p| (p.method, p.setting.clone(), p.texels, p.evaluations, p.max_error))
+            .map(|p| (p.method, p.setting.clone(), p.texels, p.evaluations, p.max_error, p.storage))
             .collect::<Vec<_>>()
     };
     let points = of();
@@ -140,10 +141,66 @@ fn a_measurement_repeats_but_for_its_times() {
     for method in ["warped", "gauss", "grid", "hammersley", "vndf", "random"] {
         assert!(points.iter().any(|p| p.0 == method), "{method}");
     }
-    let warped: Vec<_> = points.iter().filter(|p| p.0 == "warped").collect();
-    assert!(warped.windows(2).all(|w| w[0].3 <= w[1].3), "tighter costs more: {warped:?}");
+    let warped = |storages: &[Storage]| -> Vec<_> {
+        points.iter().filter(|p| p.0 == "warped" && storages.contains(&p.5)).collect()
+    };
+    for storages in [&[Storage::F32, Storage::F64][..], &[Storage::F16], &[Storage::Unorm16]] {
+        let warped = warped(storages);
+        assert!(warped.windows(2).all(|w| w[0].3 <= w[1].3), "tighter costs more: {warped:?}");
+    }
+    let warped = warped(&[Storage::F32, Storage::F64]);
+    assert!(warped.len() >= 6);
     // Tolerances as asked, 1e-7 excepted, which f32 does not reach.
     assert!(warped.iter().take(6).all(|p| p.4 <= p.1.parse().unwrap()), "{warped:?}");
+}
+
+/// Narrow storage halves the bytes, keeps the tolerance that it was asked with and is told by its rounding: where the rule
+/// is much finer than that, the error is of its size. A format that rounds by more than a tolerance is no way to it.
+#[test]
+fn storage_is_a_dimension() {
+    let options = Options { budget: 0.05, check_all: true };
+    let trade = measure(&rough(8, 8), device(), &options, &Unobserved).unwrap();
+    let values = 8 * 8 * 2;
+    let find = |setting: &str, storage| {
+        trade.points.iter().find(|p| p.method == "warped" && p.setting == setting && p.storage == storage)
+    };
+    for (storage, rounding, finest) in [(Storage::F16, 1.0 / 4096.0, 3), (Storage::Unorm16, 0.5 / 65535.0, 5)]
+    {
+        for decade in 1..=9 {
+            let setting = format!("1e-{decade}");
+            let Some(point) = find(&setting, storage) else {
+                assert!(decade > finest, "{setting} as {}", storage.name());
+                continue;
+            };
+            let tolerance = 10f64.powi(-decade);
+            assert!(decade <= finest && point.max_error <= tolerance, "{point:?}");
+            assert_eq!((point.bytes, point.precision), (2 * values, "f32"));
+            let computed = find(&setting, Storage::F32).unwrap();
+            assert!(computed.bytes == 4 * values && computed.evaluations <= point.evaluations, "{point:?}");
+            // The rule may be off by a tenth of the tolerance, and f32 by 1e-6. Of 64 values of A, which lie anywhere
+            // between two neighbours, some are rounded by three quarters of the most: less than half takes no rounding.
+            if decade == finest {
+                let range = 0.5 * rounding..rounding + 0.1 * tolerance + 1e-6;
+                assert!(range.contains(&point.max_error), "{point:?}");
+            }
+        }
+    }
+    let stored = |p: &&gonio::trade::Point| p.storage.bytes() == if p.precision == "f64" { 8 } else { 4 };
+    let whole = trade.points.iter().filter(stored).count();
+    assert_eq!(trade.points.len(), whole + 3 + 5);
+    assert!(trade.points.iter().all(|p| stored(&p) || p.method == "warped" && !p.on_front));
+}
+
+/// What a format does not hold is left out with the reason, and not clamped: Burley's lobe reflects more than 1.
+#[test]
+fn storage_that_does_not_fit_is_left_out() {
+    let axes = vec![axis(Variable::Roughness, 6), axis(Variable::ThetaI, 6)];
+    let plan = TablePlan::basis("t", &RHO_DH, model("burley"), None, axes).unwrap();
+    let trade = measure(&plan, device(), &Options { budget: 0.05, check_all: true }, &Unobserved).unwrap();
+    let refused = |what: &&String| what.contains("as unorm16") && what.contains("outside [0, 1]");
+    assert_eq!(trade.left_out.iter().filter(refused).count(), 5, "{:?}", trade.left_out);
+    assert!(trade.points.iter().all(|p| p.storage != Storage::Unorm16));
+    assert!(trade.points.iter().any(|p| p.storage == Storage::F16));
 }
 
 #[test]
@@ -175,7 +232,11 @@ fn the_command_writes_its_three_files() {
     names.sort();
     assert_eq!(names, ["trade.csv", "trade.json", "trade.png"]);
 
-    // The front by its definition: who is not on it is beaten by somebody.
+    // The front by its definition: who is not on it is beaten by somebody. Who trades exactness for bytes is no part
+    // of it.
+    let whole = |p: &serde_json::Value| p["storage"] == "f32" || p["storage"] == "f64";
+    assert!(points.iter().all(|p| whole(p) || p["on_front"] == false));
+    let points: Vec<_> = points.iter().filter(|p| whole(p)).collect();
     let number = |p: &serde_json::Value, key: &str| p[key].as_f64().unwrap();
     let beaten = |p: &serde_json::Value| {
         points.iter().filter(|q| q["extrapolated"] == false).any(|q| {

@@ -10,8 +10,7 @@
 
 /// The two halves of the azimuths, which differ in how many nodes they take.
 struct Tile {
-    near: Side,
-    far: Side,
+    sides: array<Side, 2>,
 }
 
 struct Side {
@@ -34,22 +33,22 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let alpha = alphas[row];
     let mu = mus[column];
     let e = masked(mu, alpha);
-    let tile = tiles[row * job.tiles + column / TILE_COLUMNS];
-    let near = integral(tile.near, column % TILE_COLUMNS, e, alpha);
-    let far = integral(tile.far, column % TILE_COLUMNS, e, alpha);
-    let grazing = near.grazing + far.grazing;
-    let rest = near.all + far.all - grazing;
+    let tile = row * job.tiles + column / TILE_COLUMNS;
+    // Both sides by one loop and all stores by another: software drivers compile them once each.
+    var sum = Slope();
+    for (var k = 0u; k < 2u; k++) {
+        let part = integral(tiles[tile].sides[k], column % TILE_COLUMNS, e, alpha);
+        sum.all += part.all;
+        sum.grazing += part.grazing;
+    }
+    let rest = sum.all - sum.grazing;
     let mirror = mirror_limit(mu);
-    keep(4u * row, column, select(real2(rest.x, grazing.x), mirror, alpha.x == 0.0));
-    keep(4u * row + 1u, column, select(real2(rest.y, grazing.y), mirror, alpha.y == 0.0));
-    keep(4u * row + 2u, column, select(real2(rest.z, grazing.z), mirror, alpha.z == 0.0));
-    keep(4u * row + 3u, column, select(real2(rest.w, grazing.w), mirror, alpha.w == 0.0));
-}
-
-/// One result; the last four may be fewer.
-fn keep(row: u32, column: u32, result: real2) {
-    if row < job.nodes {
-        write(row * job.columns + column - job.base, result);
+    // The last four may be fewer.
+    let end = min(4u * row + 4u, job.nodes);
+    for (var r = 4u * row; r < end; r++) {
+        let k = r - 4u * row;
+        let result = select(real2(rest[k], sum.grazing[k]), mirror, alpha[k] == 0.0);
+        write(r * job.columns + column - job.base, result);
     }
 }
 

@@ -61,13 +61,15 @@ pub struct Stages {
     pub compose: f64,
     /// Making factors and nodes, compiling pipelines, uploading.
     pub compile: f64,
-    /// Running the kernels, or the CPU path.
+    /// Running the kernels, or the CPU path. Software drivers compile a kernel when it first runs, unless they find it
+    /// in a cache: that is most of a cold start.
     pub dispatch: f64,
     /// Running them again by a finer rule, to certify the first.
     pub certify: f64,
     /// Copying results back.
     pub readback: f64,
-    /// Comparing with the reference.
+    /// Comparing with the reference: in a set of tables while the device computes the next one, so that all stages
+    /// together may be longer than the bake.
     pub check: f64,
     /// Writing files.
     pub write: f64,
@@ -97,6 +99,22 @@ impl Evaluator {
         stages: &mut Stages,
         observer: &dyn Observer,
     ) -> Result<Table> {
+        let computed = self.compute(plan, check, stages, observer)?;
+        observer.begin(&format!("checking {}", plan.name));
+        let start = Instant::now();
+        let table = computed.check(plan, check, &|share| observer.advance(share));
+        stages.check += start.elapsed().as_secs_f64();
+        table
+    }
+
+    /// Evaluates a table, and certifies integrals that are to be checked at all.
+    fn compute(
+        &self,
+        plan: &TablePlan,
+        check: Check,
+        stages: &mut Stages,
+        observer: &dyn Observer,
+    ) -> Result<Computed> {
         plan.check_fits_memory()?;
         observer.begin(&format!("baking {}", plan.name));
         let tick = |share| observer.advance(share);
@@ -116,43 +134,13 @@ impl Evaluator {
                 false => Some(path.certify(plan, &mut values, stages, &tick)?),
             };
         }
-
-        observer.begin(&format!("checking {}", plan.name));
-        let start = Instant::now();
-        let Stored { values, underflows } = plan
-            .stored()
-            .store(values, plan.quantity.error)
-            .map_err(|why| Error::Promise(format!("table {}: {why}", plan.name)))?;
-        let rounding = plan.stored().coarse_rounding(plan.quantity.error);
-        let mut error = cross_check(plan, &values, check, estimate.map(|e| e + rounding), &tick)?;
-        error.underflows = (plan.storage == Storage::F16).then_some(underflows);
-        error.interpolation = interpolation::measure(plan, &values, check)?;
-        stages.check += start.elapsed().as_secs_f64();
-        let table = self.table(plan, values, error, seconds);
-        table.check_sane()?;
-        check_energy(plan, &table)?;
-        Ok(table)
+        Ok(Computed { values, estimate, origin: self.origin(plan, seconds) })
     }
 
-    /// The table of a plan, with what was found.
-    fn table(&self, plan: &TablePlan, values: Values, error: TableError, seconds: f64) -> Table {
+    /// Where the table of a plan comes from.
+    fn origin(&self, plan: &TablePlan, seconds: f64) -> Origin {
         let path = self.path(plan);
-        Table {
-            name: plan.name.clone(),
-            quantity: plan.quantity.name.into(),
-            unit: plan.quantity.unit.into(),
-            subject: plan.subject.clone(),
-            parameters: plan.parameters(),
-            axes: plan.axes.clone(),
-            channels: plan.channels.clone(),
-            values,
-            rule: path.rule(plan, self),
-            storage: plan.stored(),
-            bilinear: plan.bilinear.clone(),
-            precision: path.name().into(),
-            error,
-            seconds,
-        }
+        Origin { rule: path.rule(plan, self), precision: path.name(), seconds }
     }
 
     /// How a plan is carried out here: f64 where its tolerance asks for it, and the CPU where the device
@@ -166,6 +154,67 @@ impl Evaluator {
                 Path::Device(device, Precision::F64)
             }
             (_, precision) => Path::Cpu(precision),
+        }
+    }
+}
+
+/// A table's values, which nobody has looked at yet: that takes no device.
+struct Computed {
+    values: Values,
+    /// The error that is promised, or found between two rules.
+    estimate: Option<f64>,
+    origin: Origin,
+}
+
+/// Where a table comes from.
+struct Origin {
+    rule: String,
+    precision: &'static str,
+    seconds: f64,
+}
+
+impl Computed {
+    /// The table as it is stored, with its error.
+    fn check(
+        self,
+        plan: &TablePlan,
+        check: Check,
+        tick: &(impl Fn(f64) -> Result<()> + Sync),
+    ) -> Result<Table> {
+        let Self { values, estimate, origin } = self;
+        let Stored { values, underflows } = plan
+            .stored()
+            .store(values, plan.quantity.error)
+            .map_err(|why| Error::Promise(format!("table {}: {why}", plan.name)))?;
+        let rounding = plan.stored().coarse_rounding(plan.quantity.error);
+        let mut error = cross_check(plan, &values, check, estimate.map(|e| e + rounding), tick)?;
+        error.underflows = (plan.storage == Storage::F16).then_some(underflows);
+        error.interpolation = interpolation::measure(plan, &values, check)?;
+        let table = origin.table(plan, values, error);
+        table.check_sane()?;
+        check_energy(plan, &table)?;
+        Ok(table)
+    }
+}
+
+impl Origin {
+    /// The table of a plan, with what was found.
+    fn table(self, plan: &TablePlan, values: Values, error: TableError) -> Table {
+        Table {
+            name: plan.name.clone(),
+            quantity: plan.quantity.name.into(),
+            unit: plan.quantity.unit.into(),
+            subject: plan.subject.clone(),
+            parameters: plan.parameters(),
+            axes: plan.axes.clone(),
+            channels: plan.channels.clone(),
+            values,
+            rule: self.rule,
+            storage: plan.stored(),
+            bilinear: plan.bilinear.clone(),
+            precision: self.precision.into(),
+            error,
+            seconds: self.seconds,
         }
     }
 }

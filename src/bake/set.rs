@@ -4,13 +4,15 @@ use super::stream::{self, Progress, Streaming};
 use super::{Evaluator, Observer, Stages, within_tolerance};
 use crate::check::Check;
 use crate::error::{Error, Result};
-use crate::files::{self, Files, Format, Provenance, TableEntry, TableSet};
+use crate::files::{self, Files, Format, Provenance, TableEntry, TableSet, Tiles};
 use crate::plan::{Basis, MaterialPlan, Plan, TablePlan};
 use crate::scene::LeftOut;
 use crate::table::Table;
 use serde::Serialize;
 use std::collections::BTreeSet;
+use std::panic::resume_unwind;
 use std::path::Path;
+use std::thread::{self, ScopedJoinHandle};
 use std::time::Instant;
 
 /// What to write, and how much of it to check.
@@ -101,8 +103,15 @@ pub fn bake_set(
         ("scene_sha256".into(), scene.sha256.clone()),
         ("device".into(), format!("{} ({})", device.name, device.driver)),
     ]);
-    let mut set = TableSet::create(dir)?;
-    let (mut tables, mut written, mut misses) = (Vec::new(), Vec::new(), Vec::new());
+    let set = TableSet::create(dir)?;
+    let mut finished = Finished {
+        set,
+        options,
+        provenance: &provenance,
+        tables: Vec::new(),
+        written: Vec::new(),
+        misses: Vec::new(),
+    };
     let streams = |table: &&TablePlan| options.streaming.takes(table);
     let key =
         |table: &TablePlan| stream::key(table, &scene.sha256, &provenance["device"], &options.streaming);
@@ -110,60 +119,56 @@ pub fn bake_set(
     let mut progress = Progress::default();
     // A device that is lost is opened once more.
     let mut spare = None;
-    for table_plan in &plan.tables {
-        if streams(&table_plan) {
-            let tiles = set.tiles(&keys, &key(table_plan))?;
-            let streamed = stream::bake(
-                evaluator,
-                &mut spare,
-                table_plan,
-                &tiles,
-                options,
-                &mut progress,
-                &mut stages,
-                observer,
-            );
-            let (table, preview) = streamed.inspect_err(|error| {
-                if matches!(error, Error::Promise(_)) {
-                    let _ = set.discard_tiles(); // the same tiles would break the promise again
-                }
-            })?;
-            if let Err(miss) = within_tolerance(table_plan, &table) {
-                misses.push(miss.to_string());
-            }
-            if misses.is_empty() {
-                observer.begin(&format!("writing {}", table.name));
-                let start = Instant::now();
-                let tick = &mut |share| observer.advance(share);
-                written.push(set.write_streamed(
-                    &table,
+    // While the device computes a table, the cores check the one before and write the one before that.
+    thread::scope(|scope| -> Result<()> {
+        let mut checking = None;
+        for table in &plan.tables {
+            if streams(&table) {
+                finished.settle(&mut checking, &mut stages)?;
+                let tiles = finished.set.tiles(&keys, &key(table))?;
+                let streamed = stream::bake(
+                    evaluator,
+                    &mut spare,
+                    table,
                     &tiles,
-                    &preview,
-                    &options.formats,
-                    &provenance,
-                    tick,
-                )?);
-                stages.write += start.elapsed().as_secs_f64();
+                    options,
+                    &mut progress,
+                    &mut stages,
+                    observer,
+                );
+                let (streamed, preview) = streamed.inspect_err(|error| {
+                    if matches!(error, Error::Promise(_)) {
+                        let _ = finished.set.discard_tiles(); // the same tiles would break the promise again
+                    }
+                })?;
+                finished.take_streamed(table, streamed, &tiles, &preview, &mut stages, observer)?;
+                continue;
             }
-            tables.push(table);
-            continue;
+            let compute =
+                |now: &Evaluator, stages: &mut Stages| now.compute(table, options.check, stages, observer);
+            let computed = match compute(spare.as_ref().unwrap_or(evaluator), &mut stages) {
+                Err(Error::Device(_)) if spare.is_none() => {
+                    compute(spare.insert(evaluator.reopen()?), &mut stages)
+                }
+                result => result,
+            };
+            // What is wrong with the table before is said before what is wrong with this one.
+            let before = checking.take().map(|check: Checking| check.end(&mut stages)).transpose()?;
+            let computed = computed?;
+            observer.begin(&format!("checking {}", table.name));
+            let check = move || {
+                let start = Instant::now();
+                let checked = computed.check(table, options.check, &|share| observer.advance(share));
+                (checked, start.elapsed().as_secs_f64())
+            };
+            checking = Some(Checking { table, thread: scope.spawn(check) });
+            if let Some((table, checked)) = before {
+                finished.take(table, checked, &mut stages)?;
+            }
         }
-        let bake =
-            |now: &Evaluator, stages: &mut Stages| now.bake(table_plan, options.check, stages, observer);
-        let table = match bake(spare.as_ref().unwrap_or(evaluator), &mut stages) {
-            Err(Error::Device(_)) if spare.is_none() => bake(spare.insert(evaluator.reopen()?), &mut stages),
-            result => result,
-        }?;
-        if let Err(miss) = within_tolerance(table_plan, &table) {
-            misses.push(miss.to_string());
-        }
-        if misses.is_empty() {
-            let start = Instant::now();
-            written.push(set.write(&table, &options.formats, &provenance)?);
-            stages.write += start.elapsed().as_secs_f64();
-        }
-        tables.push(table);
-    }
+        finished.settle(&mut checking, &mut stages)
+    })?;
+    let Finished { set, tables, written, mut misses, .. } = finished;
     if !misses.is_empty() {
         set.discard_tiles()?;
         misses.push(format!("{}: left as it was", dir.display()));
@@ -188,6 +193,78 @@ pub fn bake_set(
     .map_err(|e| Error::Internal(format!("manifest: {e}")))?;
     set.commit(&manifest)?;
     Ok(Baked { tables, files: written, warnings, tiles: progress, stages, manifest })
+}
+
+/// A table whose values are compared with the reference by a thread of its own.
+struct Checking<'scope, 'plan> {
+    table: &'plan TablePlan,
+    thread: ScopedJoinHandle<'scope, (Result<Table>, f64)>,
+}
+
+impl<'plan> Checking<'_, 'plan> {
+    /// Waits for it.
+    fn end(self, stages: &mut Stages) -> Result<(&'plan TablePlan, Table)> {
+        let (checked, seconds) = self.thread.join().unwrap_or_else(|panic| resume_unwind(panic));
+        stages.check += seconds;
+        Ok((self.table, checked?))
+    }
+}
+
+/// The tables so far, in the plan's order.
+struct Finished<'a> {
+    set: TableSet,
+    options: &'a Options,
+    provenance: &'a Provenance,
+    tables: Vec<Table>,
+    written: Vec<Files>,
+    /// What tables missed; nothing is written any more when there is one.
+    misses: Vec<String>,
+}
+
+impl Finished<'_> {
+    /// Takes the table that is being checked, if there is one.
+    fn settle(&mut self, checking: &mut Option<Checking>, stages: &mut Stages) -> Result<()> {
+        let Some(check) = checking.take() else { return Ok(()) };
+        let (plan, table) = check.end(stages)?;
+        self.take(plan, table, stages)
+    }
+
+    fn take(&mut self, plan: &TablePlan, table: Table, stages: &mut Stages) -> Result<()> {
+        if self.is_met(plan, &table) {
+            let start = Instant::now();
+            self.written.push(self.set.write(&table, &self.options.formats, self.provenance)?);
+            stages.write += start.elapsed().as_secs_f64();
+        }
+        self.tables.push(table);
+        Ok(())
+    }
+
+    fn take_streamed(
+        &mut self,
+        plan: &TablePlan,
+        table: Table,
+        tiles: &Tiles,
+        preview: &Table,
+        stages: &mut Stages,
+        observer: &dyn Observer,
+    ) -> Result<()> {
+        if self.is_met(plan, &table) {
+            observer.begin(&format!("writing {}", table.name));
+            let start = Instant::now();
+            let (formats, tick) = (&self.options.formats, &mut |share| observer.advance(share));
+            let written = self.set.write_streamed(&table, tiles, preview, formats, self.provenance, tick)?;
+            self.written.push(written);
+            stages.write += start.elapsed().as_secs_f64();
+        }
+        self.tables.push(table);
+        Ok(())
+    }
+
+    /// Whether this table and all before it meet their tolerances.
+    fn is_met(&mut self, plan: &TablePlan, table: &Table) -> bool {
+        self.misses.extend(within_tolerance(plan, table).err().map(|miss| miss.to_string()));
+        self.misses.is_empty()
+    }
 }
 
 /// A material whose format lets it reflect more than it receives says so.

@@ -85,7 +85,7 @@ pub(super) fn bake(
     let estimate = evaluator.path(plan).estimate(plan);
     let unknown = Comparison::new(plan, options.check, None).finish();
     let mut pass = Pass {
-        table: evaluator.table(plan, Values::F32(Vec::new()), unknown, 0.0),
+        table: evaluator.origin(plan, 0.0).table(plan, Values::F32(Vec::new()), unknown),
         comparison: Comparison::new(plan, options.check, estimate),
         preview: Preview::new(plan),
         done: 0,

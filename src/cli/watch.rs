@@ -68,7 +68,8 @@ impl Observer for Watch {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
         }
         let mut step = self.step.lock().unwrap_or_else(PoisonError::into_inner);
-        step.share += share;
+        // Two tables may be under way, of which the bar shows one.
+        step.share = (step.share + share).min(1.0);
         let position = (step.count.max(1) - 1) * TICKS + (step.share * TICKS as f64) as u64;
         if position > self.bar.position() {
             self.bar.set_position(position);

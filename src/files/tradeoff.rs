@@ -38,7 +38,8 @@ pub(crate) fn draw(trade: &Trade) -> Result<Vec<u8>> {
     };
     let title = canvas.fit(&trade.table, 22.0, 940.0);
     canvas.text(&title, (30.0, 28.0), 22.0, Align::Left, BLACK);
-    let legend = "grey band: the Pareto front; rings: measured on a subset, time extrapolated";
+    let legend = "grey band: the Pareto front; rings: measured on a subset, time extrapolated; \
+                  crosses: stored in 16 bits";
     canvas.text(legend, (30.0, 56.0), LABEL_SIZE, Align::Left, GREY);
     canvas.border(frame, GREY);
     ticks_below(&mut canvas, frame, &time, true);
@@ -50,7 +51,12 @@ pub(crate) fn draw(trade: &Trade) -> Result<Vec<u8>> {
     canvas.line(&front, 15.0, FRONT);
     let mut labels: Vec<f32> = Vec::new();
     for (method, color) in METHODS {
-        let line: Vec<_> = points.iter().filter(|p| p.method == method).collect();
+        let (line, narrow): (Vec<_>, Vec<_>) =
+            points.iter().copied().filter(|p| p.method == method).partition(|p| p.is_whole());
+        for (x, y) in narrow.iter().map(|p| place(p)) {
+            canvas.line(&[(x - 4.0, y - 4.0), (x + 4.0, y + 4.0)], 1.5, color);
+            canvas.line(&[(x - 4.0, y + 4.0), (x + 4.0, y - 4.0)], 1.5, color);
+        }
         canvas.line(&line.iter().map(|p| place(p)).collect::<Vec<_>>(), 2.5, color);
         for point in &line {
             canvas.disc(place(point), 5.0, color);

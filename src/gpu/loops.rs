@@ -53,10 +53,11 @@ fn in_blocks(terms: usize) -> usize {
     terms + 2 * terms.div_ceil(32) + 1
 }
 
-/// `slopes.wgsl`: for both sides, azimuths and the nodes of each. Invocations that run in step wait for the one
-/// with the most of each.
+/// `slopes.wgsl`: for both sides, azimuths and the nodes of each; and the results of four α. Invocations that run in
+/// step wait for the one with the most of each.
 fn slopes(work: &SlopeWork) -> usize {
-    [0, 1]
+    let (sides, results) = (3, 5);
+    let terms: usize = [0, 1]
         .map(|side| {
             let counts = || work.tiles.iter().map(|tile| tile[side].counts);
             let azimuths = counts().map(|counts| counts.azimuths).max().unwrap_or(0);
@@ -64,7 +65,8 @@ fn slopes(work: &SlopeWork) -> usize {
             azimuths * (nodes + 2) + 1
         })
         .iter()
-        .sum()
+        .sum();
+    terms + sides + results
 }
 
 #[cfg(test)]

@@ -2,7 +2,10 @@
 
 use crate::error::Result;
 use crate::plan::{Precision, Rule, TablePlan};
+use crate::storage::Storage;
+use crate::table::ErrorKind;
 use crate::work::Work;
+use std::iter;
 
 /// A method at a cost, and the texels that it is run on.
 pub(super) struct Candidate {
@@ -31,9 +34,10 @@ pub(super) fn candidates(
     let most = budget * EVALUATIONS_PER_SECOND;
     let (mut found, mut left_out) = (Vec::new(), Vec::new());
     for method in methods() {
-        for (setting, rule, tolerance) in method {
+        let stored = |row: Setting| storages(row.2).map(move |storage| (row.clone(), storage));
+        for ((setting, rule, tolerance), storage) in method.into_iter().flat_map(stored) {
             let of = |plan: &TablePlan| -> Result<(TablePlan, u64)> {
-                let plan = plan.clone().with_rule(rule)?;
+                let plan = plan.clone().with_rule(rule)?.with_storage(storage);
                 let plan =
                     if let Some(tolerance) = tolerance { plan.with_tolerance(tolerance) } else { plan };
                 let evaluations: u64 =
@@ -67,6 +71,15 @@ pub(super) fn candidates(
         }
     }
     (found, left_out)
+}
+
+/// The formats that a table of a tolerance is stored in: as computed, and those which round by less than it. Rules
+/// without a tolerance leave no room for rounding, and take the first alone. Not only
+/// for rows on the front: which these are depends on the clock.
+pub(super) fn storages(tolerance: Option<f64>) -> impl Iterator<Item = Storage> {
+    let narrow = [Storage::F16, Storage::Unorm16].into_iter();
+    let fits = move |storage: &Storage| tolerance.is_some_and(|t| storage.rounding(ErrorKind::Absolute) <= t);
+    iter::once(Storage::F32).chain(narrow.filter(fits))
 }
 
 /// The rule of a method at a setting, and its tolerance where it takes one.

@@ -19,6 +19,7 @@ use crate::check;
 use crate::error::{Error, Result};
 use crate::plan::{Precision, TablePlan};
 use crate::quantity::Evaluation;
+use crate::storage::Storage;
 use candidates::{Candidate, candidates};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -41,7 +42,8 @@ pub struct Options {
 impl Options {
     /// No more steps than an observer is told of: the reference, and each method at each cost.
     pub fn steps(&self) -> usize {
-        1 + candidates::methods().iter().map(Vec::len).sum::<usize>()
+        let settings = candidates::methods().into_iter().flatten();
+        1 + settings.map(|(_, _, tolerance)| candidates::storages(tolerance).count()).sum::<usize>()
     }
 }
 
@@ -94,6 +96,11 @@ pub struct Point {
     pub setting: String,
     /// The arithmetic: `f32` or `f64`.
     pub precision: &'static str,
+    /// What the values are rounded to when they are stored: the arithmetic's own format, or a narrower one. Its time
+    /// is without that rounding, which is the host's; a tolerance with it takes a finer rule.
+    pub storage: Storage,
+    /// Of the whole table as it is stored.
+    pub bytes: usize,
     /// Texels that were computed: all, or the subset's.
     pub texels: usize,
     /// Evaluations of the integrand for these texels. The warped rule does them at Chebyshev points of a table's axes
@@ -121,7 +128,8 @@ pub struct Point {
     pub checked: usize,
     /// The share of the time that the device could not do without: see [`Floor`].
     pub floor_share: Option<f64>,
-    /// Whether no measured point is both faster and more exact; extrapolated ones do not take part.
+    /// Whether no measured point is both faster and more exact; extrapolated ones do not take part, nor those of
+    /// narrow storage, which trade exactness for bytes.
     pub on_front: bool,
 }
 
@@ -140,6 +148,8 @@ pub fn measure(
             "values are not integrated and have no methods to compare; give rho_dh, rho_hh or split_sum";
         return Err(Error::input(format!("table \"{}\": {why}", table.name)));
     }
+    // Each point has a storage of its own.
+    let table = &table.clone().with_storage(Storage::F32);
     let subset = Subset::new(table)?;
     let (candidates, mut left_out) = candidates(table, &subset.plan, options.budget);
     observer.begin("computing the reference");
@@ -161,10 +171,24 @@ pub fn measure(
             Evaluator::Device(_) => candidate.precision,
             Evaluator::Cpu => Precision::F64,
         };
+        let storage = match (candidate.plan.storage, precision) {
+            (Storage::F32, Precision::F64) => Storage::F64,
+            (storage, _) => storage,
+        };
         let timing = time(evaluator, &candidate.plan, precision, &in_budget, &|| observer.advance(0.0))?;
-        points.push(truth.point(table, &subset, candidate, timing, precision, rates));
+        match timing.stored(storage, table.quantity.error) {
+            Ok(timing) => {
+                points.push(truth.point(table, &subset, candidate, timing, (precision, storage), rates));
+            }
+            Err(why) => left_out.push(format!(
+                "{} {} as {}: {why}",
+                candidate.method,
+                candidate.setting,
+                storage.name()
+            )),
+        }
     }
-    let places: Vec<_> = points.iter().map(|p| (p.table_seconds, p.max_error, !p.extrapolated)).collect();
+    let places: Vec<_> = points.iter().map(|p| (p.table_seconds, p.max_error, p.takes_part())).collect();
     for (point, on_front) in points.iter_mut().zip(front(&places)) {
         point.on_front = on_front;
     }
@@ -223,7 +247,7 @@ impl Truth {
         subset: &Subset,
         candidate: Candidate,
         timing: Timing,
-        precision: Precision,
+        (precision, storage): (Precision, Storage),
         rates: Option<crate::gpu::Rates>,
     ) -> Point {
         let Candidate { method, setting, plan, whole, evaluations, .. } = candidate;
@@ -251,6 +275,8 @@ impl Truth {
             method,
             setting,
             precision: precision.name(),
+            storage,
+            bytes: table.texels() * channels * storage.bytes(),
             texels: plan.texels(),
             evaluations,
             runs: runs.len(),
@@ -272,10 +298,21 @@ impl Truth {
     }
 }
 
+impl Point {
+    /// Whether the values are stored as they were computed.
+    pub fn is_whole(&self) -> bool {
+        self.storage.bytes() >= Storage::F32.bytes()
+    }
+
+    fn takes_part(&self) -> bool {
+        self.is_whole() && !self.extrapolated
+    }
+}
+
 impl Trade {
-    /// The point of a method at a setting.
+    /// The point of a method at a setting, stored as it was computed.
     pub fn point(&self, method: &str, setting: &str) -> Option<&Point> {
-        self.points.iter().find(|p| p.method == method && p.setting == setting)
+        self.points.iter().find(|p| p.method == method && p.setting == setting && p.is_whole())
     }
 
     /// The comparisons that matter: with 1024 samples as most bakers take them, and at an error of 1e-4.

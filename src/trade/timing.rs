@@ -5,7 +5,8 @@ use crate::cpu;
 use crate::error::{Error, Result};
 use crate::gpu;
 use crate::plan::{Precision, TablePlan};
-use crate::table::Values;
+use crate::storage::{Storage, Stored};
+use crate::table::{ErrorKind, Values};
 use crate::work::Work;
 use std::time::Instant;
 
@@ -16,6 +17,14 @@ pub(super) struct Timing {
     /// Seconds, run by run.
     pub runs: Vec<f64>,
     pub values: Values,
+}
+
+impl Timing {
+    /// With the values that a reader of the stored ones gets; a reason where a format does not hold them.
+    pub fn stored(self, storage: Storage, kind: ErrorKind) -> Result<Self, String> {
+        let Stored { values, .. } = storage.store(self.values, kind)?;
+        Ok(Self { values, ..self })
+    }
 }
 
 /// A table that is ready to be run.

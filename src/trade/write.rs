@@ -35,15 +35,17 @@ fn to_json(trade: &Trade, device: &Value) -> Value {
 /// One line a point; times in seconds.
 fn to_csv(points: &[Point]) -> String {
     let mut csv = String::from(
-        "method,setting,precision,texels,evaluations,runs,seconds,seconds_min,seconds_max,table_seconds,\
+        "method,setting,precision,storage,bytes,texels,evaluations,runs,seconds,seconds_min,seconds_max,table_seconds,\
          extrapolated,prepare,max_error,rms_error,checked,floor_share,on_front\n",
     );
     for p in points {
         csv += &format!(
-            "{},{},{},{},{},{},{:e},{:e},{:e},{:e},{},{:e},{:e},{:e},{},{},{}\n",
+            "{},{},{},{},{},{},{},{},{:e},{:e},{:e},{:e},{},{:e},{:e},{:e},{},{},{}\n",
             p.method,
             p.setting,
             p.precision,
+            p.storage.name(),
+            p.bytes,
             p.texels,
             p.evaluations,
             p.runs,
