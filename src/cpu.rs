@@ -84,8 +84,9 @@ pub(crate) fn stream(
 fn add_row(out: &mut [f64], lobe: &Lobe, work: &Work, row: usize) {
     let WorkKind::Values { pairs, azimuths } = &work.kind else { return };
     let (setting, pair) = (lobe.setting(work.alphas[row / pairs.len()]), &pairs[row % pairs.len()]);
+    let scale = work.scales.get(row / pairs.len()).map_or(1.0, |scale| scale.at(pair.mu_i, pair.mu_e));
     for (azimuth, out) in azimuths.iter().zip(out.chunks_mut(lobe.weights.len())) {
-        add(out, lobe, (lobe.model.lobe)(pair, azimuth, &setting));
+        add(out, lobe, (lobe.model.lobe)(pair, azimuth, &setting).map(|x| scale * x));
     }
 }
 

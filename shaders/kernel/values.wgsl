@@ -56,7 +56,9 @@ fn evaluate(row: Row, quad: u32, z: Quad, w: Weights) {
     let a1 = lobe(row.pair, Azimuth(z.sin2.y, z.cos2.y, z.back.y, 0.0, 0.0), row.pair.own, row.lobe);
     let a2 = lobe(row.pair, Azimuth(z.sin2.z, z.cos2.z, z.back.z, 0.0, 0.0), row.pair.own, row.lobe);
     let a3 = lobe(row.pair, Azimuth(z.sin2.w, z.cos2.w, z.back.w, 0.0, 0.0), row.pair.own, row.lobe);
-    store(row.first + quad * CHANNELS, w, a0, a1, a2, a3);
+    // What the row is multiplied with is the weights' to bear: 1 changes no bit.
+    let s = row.pair.bin;
+    store(row.first + quad * CHANNELS, Weights(s * w.r, s * w.g, s * w.b), a0, a1, a2, a3);
 }
 
 fn put(at: u32, v: vec4f) {

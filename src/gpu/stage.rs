@@ -4,6 +4,7 @@ use super::baker::{Baker, count};
 use super::compose::{COARSE_NODES, Kernel, VALUE_WINDOW};
 use crate::check::stride;
 use crate::error::{Error, Result};
+use crate::factor::Scale;
 use crate::mapped::{MappedWork, POINT, Texel};
 use crate::models::{ALPHA_MIN_INTEGRAL, Model, SlopeCounts, is_fine};
 use crate::pair::{Azimuth, Pair};
@@ -48,22 +49,34 @@ pub(super) struct Stage {
 pub(super) struct Rows {
     alphas: Vec<f64>,
     pairs: Vec<Row>,
+    /// μi and μe of each pair, and what the lobe is multiplied with at each α.
+    cosines: Vec<[f64; 2]>,
+    scales: Vec<Scale>,
 }
 
-/// `Pair` of `shaders/pair.wgsl` in f32, the only precision of values on a device. The last is α.
+/// `Pair` of `shaders/pair.wgsl` in f32, the only precision of values on a device. The last is α, the one before it
+/// what the row is multiplied with.
 type Row = [f32; 8];
 
 impl Rows {
-    fn new(alphas: &[f64], pairs: &[Pair]) -> Self {
+    fn new(alphas: &[f64], pairs: &[Pair], scales: &[Scale]) -> Self {
         let row = |pair: &Pair| pair.to_array().map(|x| x as f32);
-        Self { alphas: alphas.to_vec(), pairs: pairs.iter().map(row).collect() }
+        Self {
+            alphas: alphas.to_vec(),
+            pairs: pairs.iter().map(row).collect(),
+            cosines: pairs.iter().map(|pair| [pair.mu_i, pair.mu_e]).collect(),
+            scales: scales.to_vec(),
+        }
     }
 
     /// Some of them as the kernel lays them out.
     pub fn of(&self, units: &Range<usize>) -> Vec<Row> {
         let row = |unit: usize| {
-            let mut row = self.pairs[unit % self.pairs.len()];
-            row[7] = self.alphas[unit / self.pairs.len()] as f32;
+            let (at, pair) = (unit / self.pairs.len(), unit % self.pairs.len());
+            let mut row = self.pairs[pair];
+            let [mu_i, mu_e] = self.cosines[pair];
+            row[6] = self.scales.get(at).map_or(1.0, |scale| scale.at(mu_i, mu_e)) as f32;
+            row[7] = self.alphas[at] as f32;
             row
         };
         units.clone().map(row).collect()
@@ -106,7 +119,7 @@ impl Stages {
                     precision: Precision::F32,
                     job: Job::new(lobe, 1.0),
                     inputs: vec![upload.quads(azimuths)],
-                    rows: Some(Rows::new(&alphas, pairs)),
+                    rows: Some(Rows::new(&alphas, pairs, &work.scales)),
                     mapped: None,
                     per_unit: azimuths.len().div_ceil(4),
                     units: 1,
