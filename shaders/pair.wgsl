@@ -9,7 +9,7 @@ struct Pair {
     sd: real,     // sin²((θi − θe)/2)
     mu_i: real,   // cos θi
     mu_e: real,   // cos θe
-    bin: real,    // 1 / weight of this θe cell where it holds the mirror direction, else 0; of a row of values, its place
+    bin: real,    // 1 / weight of this θe cell where it holds the mirror direction, else 0
     own: real,    // α of a row of values; of an integral, the weight of this θe
     st: real,     // (sin θi + sin θe)/2
     dt: real,     // (sin θi − sin θe)/2

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::plan::{Lobe, TablePlan};
 use crate::points::delta_phi;
 use crate::quantity::Evaluation;
-use crate::reference::Angles;
+use crate::reference::{Angles, Product};
 use crate::table::{ErrorKind, TableError, Values, indices};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -177,6 +177,27 @@ fn reference_lobe(evaluation: Evaluation, lobe: &Lobe, at: &BTreeMap<Variable, f
     let setting = &lobe.setting_at(get(Variable::Roughness));
     let theta_i = get(Variable::ThetaI).unwrap_or(0.0);
     let phi_i = get(Variable::PhiI).unwrap_or(0.0);
+    if !lobe.factors.is_empty() {
+        let Some(product) = Product::new(lobe, get(Variable::Roughness)) else { return [f64::NAN; 2] };
+        return match evaluation {
+            Evaluation::Value => {
+                let theta_e = get(Variable::ThetaE).unwrap_or(0.0);
+                let delta_phi = match get(Variable::PhiE) {
+                    Some(phi_e) => delta_phi(phi_i, phi_e),
+                    None => get(Variable::DeltaPhi).unwrap_or(0.0),
+                };
+                let f = reference.brdf(&Angles { theta_i, theta_e, delta_phi, phi_i }, setting);
+                let factor = product.at(theta_i.cos(), theta_e.cos());
+                f.unwrap_or([f64::NAN; 2]).map(|f| f * factor)
+            }
+            // Of the split sum it is ωe that is fixed.
+            Evaluation::Directional => match get(Variable::Mu) {
+                Some(mu) => product.rho_dh(reference, mu, setting, true),
+                None => product.rho_dh(reference, theta_i.cos(), setting, false),
+            },
+            Evaluation::Hemispherical => product.rho_hh(reference, setting),
+        };
+    }
     match evaluation {
         Evaluation::Value => {
             let theta_e = get(Variable::ThetaE).unwrap_or(0.0);

@@ -27,6 +27,7 @@
 //! | [`bake`] | the order of it all: evaluate, look, check, write | how any of it is done |
 //! | `portrait` | what a picture of a BRDF shows: lobes, lit spheres, ρ_dh | how it is drawn |
 //! | [`points`] | values at any list of pairs of directions, unlooked at | tables, files |
+//! | [`factor`] | what a lobe is multiplied with by the two cosines: compensation, coats, sheen | azimuths, devices |
 //! | [`table`], [`axis`], [`quantity`], [`storage`], [`setting`] | what a table is | where it came from |
 //! | `work`, `slopes`, `sampling`, `spread` | the rules: nodes, weights, matrices, in f64 | devices |
 //! | `interpolation`, `optimise` | what a bilinear reader gets, and the cheapest table for it | devices |
@@ -76,6 +77,7 @@ pub mod check;
 pub mod cli;
 mod cpu;
 pub mod error;
+pub mod factor;
 #[cfg(feature = "files")]
 pub mod files;
 pub mod gpu;

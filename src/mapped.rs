@@ -1,6 +1,7 @@
 //! Integrals by directions that the host finds, each texel its own: whatever a lobe's shape, its model says where it
 //! lives. For models that no kernel with a map of its own is worth: a direction takes 100 ns here.
 
+use crate::factor::{Scale, product::Nodes};
 use crate::pair::{Azimuth, Frame, Pair};
 use crate::setting::Setting;
 use rayon::prelude::*;
@@ -39,10 +40,23 @@ pub(crate) const POINT: usize = 16;
 /// Inner integrals for each (setting, fixed direction).
 #[derive(Clone)]
 pub(crate) struct MappedWork {
-    map: Map,
+    source: Source,
     pub fixed: Vec<Fixed>,
     settings: Vec<Setting>,
     tolerance: f64,
+    /// What the lobe is multiplied with at each setting, and whether it is ωe that is fixed; none: by nothing.
+    scales: Vec<Scale>,
+    fixed_is_exitant: bool,
+}
+
+/// Where directions come from.
+#[derive(Clone, Copy)]
+pub(crate) enum Source {
+    Map(Map),
+    /// A diffuse lobe's own rule.
+    Product(Nodes),
+    /// A delta has but one.
+    Delta(fn(mu: f64, &Setting) -> [f64; 2]),
 }
 
 /// What a texel is: a sum over samples, or a limit in closed form.
@@ -52,16 +66,41 @@ pub(crate) enum Texel {
 }
 
 impl MappedWork {
-    pub fn new(map: Map, fixed: Vec<Fixed>, settings: Vec<Setting>, tolerance: f64) -> Self {
-        Self { map, fixed, settings, tolerance }
+    pub fn new(source: Source, fixed: Vec<Fixed>, settings: Vec<Setting>, tolerance: f64) -> Self {
+        Self { source, fixed, settings, tolerance, scales: Vec::new(), fixed_is_exitant: false }
+    }
+
+    /// The same of a lobe times factors.
+    pub fn times(self, scales: Vec<Scale>, fixed_is_exitant: bool) -> Self {
+        Self { scales, fixed_is_exitant, ..self }
     }
 
     /// The result `at`, counting fixed directions first.
     pub fn texel(&self, at: usize) -> Texel {
-        let (setting, fixed) = (&self.settings[at / self.fixed.len()], &self.fixed[at % self.fixed.len()]);
-        match (self.map.limit)(fixed.mu, setting) {
-            Some(limit) => Texel::Limit(limit),
-            None => Texel::Samples((self.map.samples)(fixed, setting, self.tolerance)),
+        let row = at / self.fixed.len();
+        let (setting, fixed) = (&self.settings[row], &self.fixed[at % self.fixed.len()]);
+        let scale = self.scales.get(row).cloned().unwrap_or_default();
+        let texel = match self.source {
+            Source::Map(map) => match (map.limit)(fixed.mu, setting) {
+                Some(limit) => Texel::Limit(limit),
+                None => Texel::Samples((map.samples)(fixed, setting, self.tolerance)),
+            },
+            Source::Product(nodes) => Texel::Samples(nodes.samples(fixed.mu, &scale, self.tolerance)),
+            Source::Delta(limit) => Texel::Limit(limit(fixed.mu, setting)),
+        };
+        if scale.is_one() {
+            return texel;
+        }
+        let factor = |other: f64| match self.fixed_is_exitant {
+            true => scale.at(other, fixed.mu),
+            false => scale.at(fixed.mu, other),
+        };
+        match texel {
+            Texel::Limit(limit) => Texel::Limit(limit.map(|x| x * factor(fixed.mu))),
+            Texel::Samples(mut samples) => {
+                samples.iter_mut().for_each(|sample| sample.weight *= factor(sample.pair.mu_e));
+                Texel::Samples(samples)
+            }
         }
     }
 
@@ -72,7 +111,14 @@ impl MappedWork {
 
     /// Evaluations that no result takes more of.
     pub fn most(&self) -> usize {
-        self.settings.iter().map(|setting| (self.map.most)(setting, self.tolerance)).max().unwrap_or(1)
+        let most = |(row, setting): (usize, &Setting)| match self.source {
+            Source::Map(map) => (map.most)(setting, self.tolerance),
+            Source::Product(nodes) => {
+                nodes.most(&self.scales.get(row).cloned().unwrap_or_default(), self.tolerance)
+            }
+            Source::Delta(_) => 1,
+        };
+        self.settings.iter().enumerate().map(most).max().unwrap_or(1)
     }
 }
 

@@ -8,6 +8,7 @@ pub use requirements::{Basis, MaterialPlan, Plan, Selection};
 
 use crate::axis::{Axis, Variable};
 use crate::error::{Error, Result};
+use crate::factor::{Compensation, Factor, Scale};
 use crate::models::{Integral, Model};
 use crate::optimise::Choice;
 use crate::quantity::{Evaluation, Quantity};
@@ -53,12 +54,14 @@ pub struct Lobe {
     pub parameters: Parameters,
     /// For each channel, the weights of the components A and B.
     pub weights: Vec<[f64; 2]>,
+    /// What it is multiplied with beside, of the two cosines alone.
+    pub factors: Vec<Factor>,
 }
 
 impl Lobe {
     /// A lobe with its model's defaults for all but the roughness.
     pub fn new(model: &'static Model, roughness: Option<f64>, weights: Vec<[f64; 2]>) -> Self {
-        Self { model, roughness, parameters: model.defaults(), weights }
+        Self { model, roughness, parameters: model.defaults(), weights, factors: Vec::new() }
     }
 
     /// Takes a value for a parameter of its model.
@@ -85,6 +88,11 @@ impl Lobe {
     /// The setting at the lobe's own roughness, or at this one where a table sweeps it.
     pub fn setting_at(&self, swept: Option<f64>) -> Setting {
         self.setting(self.model.measure(swept.or(self.roughness).unwrap_or(0.0)))
+    }
+
+    /// What ρ_dh of it reaches at most with every weight 1.
+    pub(crate) fn rho_bound(&self) -> f64 {
+        self.model.rho_bound * self.factors.iter().map(Factor::rho_bound).product::<f64>()
     }
 
     /// The settings with some shapes.
@@ -230,6 +238,28 @@ impl TablePlan {
         Self { rule, ..self }.checked()
     }
 
+    /// The same of lobes with energy compensation. What comes back is not linear in F0 and F90, so that a basis must
+    /// have one component.
+    ///
+    /// # Errors
+    /// When a lobe is none of microfacets, or has several components.
+    pub fn with_compensation(mut self, compensation: Compensation) -> Result<Self> {
+        if compensation == Compensation::None {
+            return Ok(self);
+        }
+        if self.is_basis() && self.channels.len() > 1 {
+            return Err(Error::input(format!(
+                "table \"{}\": with compensation {} is not linear in F0 and F90; tabulate a material, or take \
+                 another fresnel, such as none",
+                self.name, self.subject
+            )));
+        }
+        let lobes = self.lobes.into_iter().map(|lobe| compensation.lobes(lobe));
+        self.lobes = lobes.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect();
+        self.subject = format!("{}-{}", self.subject, compensation.name());
+        self.checked()
+    }
+
     /// The same table with some of its model's parameters, by name.
     ///
     /// # Errors
@@ -289,6 +319,14 @@ impl TablePlan {
             let model = lobe.model;
             if let Some(why) = model.refused(&lobe.parameters) {
                 return refuse(format!("{}: {why}", model.name));
+            }
+            for of in lobe.factors.iter().filter_map(Factor::albedo) {
+                if let Some(why) = of.refused() {
+                    return refuse(format!("{} has no albedo: {why}", of.model.name));
+                }
+                if of.model.shape.is_some() && !swept && of.roughness.or(lobe.roughness).is_none() {
+                    return refuse(format!("the albedo of {} needs a roughness", of.model.name));
+                }
             }
             if model.shape.is_some() && !swept && lobe.roughness.is_none() {
                 return refuse(format!("{} needs a roughness: give a value or an axis", model.name));
@@ -369,7 +407,15 @@ impl TablePlan {
                 "{samples} samples; give 1 to {CHUNK}, or a multiple of it up to {MAX_SAMPLES}"
             ));
         }
-        for Lobe { model, .. } in &self.lobes {
+        for Lobe { model, factors, .. } in &self.lobes {
+            if !factors.is_empty()
+                && self.rule != Rule::Warped
+                && self.quantity.evaluation != Evaluation::Value
+            {
+                return Err(format!(
+                    "the {name} rule does not do a lobe times a factor; use the warped rule"
+                ));
+            }
             let fits = match model.integral {
                 Integral::Slopes(_) => model.has_samplers() || self.rule.samples().is_none(),
                 Integral::Smooth(_) | Integral::Kinked(_) | Integral::Mapped(_) => {
@@ -434,6 +480,19 @@ impl TablePlan {
         INTEGRAL_F32 * self.lobes.iter().map(worse).fold(1.0, f64::max)
     }
 
+    /// The relative error that factors add to its values.
+    pub(crate) fn factor_error(&self) -> f64 {
+        let swept = self.axis(Variable::Roughness).map(|axis| axis.values.clone());
+        let rows = |lobe: &Lobe| {
+            swept.clone().map_or(vec![lobe.roughness], |values| values.into_iter().map(Some).collect())
+        };
+        let error = |lobe: &Lobe| {
+            let rows = if lobe.factors.is_empty() { Vec::new() } else { rows(lobe) };
+            rows.into_iter().map(|row| Scale::new(&lobe.factors, row).error()).fold(0.0, f64::max)
+        };
+        self.lobes.iter().map(error).fold(0.0, f64::max)
+    }
+
     /// The least arithmetic that meets the tolerance: f32 has a floor, of some hundred roundings in an
     /// integral and of [`VALUE_F32`] in a value.
     pub fn precision(&self) -> Precision {
@@ -484,7 +543,7 @@ impl TablePlan {
     /// Whether it is of a model with unit weights. The subject's name does not tell: a material may be
     /// named like a model.
     pub fn is_basis(&self) -> bool {
-        matches!(&self.lobes[..], [lobe] if self.channels.iter().eq(lobe.model.components.iter().map(|c| c.name)))
+        matches!(&self.lobes[..], [lobe] if lobe.factors.is_empty() && self.channels.iter().eq(lobe.model.components.iter().map(|c| c.name)))
     }
 
     /// The axis of a variable, if the table has it.

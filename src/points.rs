@@ -17,6 +17,7 @@
 
 use crate::bake::Evaluator;
 use crate::error::{Error, Result};
+use crate::factor::Scale;
 use crate::gpu;
 use crate::models::Shape;
 use crate::pair::{Azimuth, Pair};
@@ -163,7 +164,8 @@ impl<'a> Points<'a> {
             let Some(shape) = lobe.model.shape else { return Ok(0.0) };
             in_range(&shape, shape.measure(lobe.roughness.ok_or_else(missing)?))
         });
-        let setting = alphas.collect::<Result<Vec<_>>>()?;
+        let at = |(lobe, alpha): (&Lobe, Result<f64>)| Ok(At::new(lobe, alpha?, lobe.roughness));
+        let setting = self.lobes.iter().zip(alphas).map(at).collect::<Result<Vec<_>>>()?;
         self.run(&[setting], angles, values)
     }
 
@@ -174,16 +176,19 @@ impl<'a> Points<'a> {
     /// # Errors
     /// When angles are no directions, an α is none, or the device fails.
     pub fn sweep(&mut self, alphas: &[f64], angles: &[Angles], values: &mut Vec<f32>) -> Result<()> {
-        let setting = |alpha: f64| -> Result<Vec<f64>> {
-            let lobes = self.lobes.iter();
-            lobes.map(|lobe| lobe.model.shape.map_or(Ok(0.0), |shape| in_range(&shape, alpha))).collect()
+        let setting = |alpha: f64| -> Result<Vec<At>> {
+            let at = |lobe: &Lobe| {
+                let Some(shape) = lobe.model.shape else { return Ok(At::new(lobe, 0.0, None)) };
+                Ok(At::new(lobe, in_range(&shape, alpha)?, Some(shape.roughness(alpha))))
+            };
+            self.lobes.iter().map(at).collect()
         };
         let settings = alphas.iter().map(|&alpha| setting(alpha)).collect::<Result<Vec<_>>>()?;
         self.run(&settings, angles, values)
     }
 
-    /// At each setting: an α for each lobe.
-    fn run(&mut self, settings: &[Vec<f64>], angles: &[Angles], values: &mut Vec<f32>) -> Result<()> {
+    /// At each setting: an α and a factor for each lobe.
+    fn run(&mut self, settings: &[Vec<At>], angles: &[Angles], values: &mut Vec<f32>) -> Result<()> {
         if let Some((k, Err(why))) =
             angles.par_iter().map(Angles::check).enumerate().find_first(|(_, checked)| checked.is_err())
         {
@@ -199,9 +204,13 @@ impl<'a> Points<'a> {
         }
         match &mut self.place {
             Place::Device(points) => {
-                let on_device = |alphas: &Vec<f64>| -> Vec<f64> {
-                    let lobes = self.lobes.iter().zip(alphas);
-                    lobes.map(|(lobe, &alpha)| lobe.model.on_device(alpha)).collect()
+                let on_device = |setting: &Vec<At>| -> Vec<At> {
+                    let lobes = self.lobes.iter().zip(setting);
+                    let at = |(lobe, at): (&Lobe, &At)| At {
+                        alpha: lobe.model.on_device(at.alpha),
+                        scale: at.scale.clone(),
+                    };
+                    lobes.map(at).collect()
                 };
                 let settings: Vec<_> = settings.iter().map(on_device).collect();
                 points.evaluate(&settings, angles, values)
@@ -224,13 +233,26 @@ impl<'a> Points<'a> {
 /// Factors that the CPU path holds at once: 6 MiB.
 const CPU_CHUNK: usize = 1 << 16;
 
+/// Where a lobe is evaluated: its α, and what it is multiplied with.
+pub(crate) struct At {
+    pub alpha: f64,
+    pub scale: Scale,
+}
+
+impl At {
+    fn new(lobe: &Lobe, alpha: f64, roughness: Option<f64>) -> Self {
+        Self { alpha, scale: Scale::new(&lobe.factors, roughness) }
+    }
+}
+
 /// A value by the lobes' f64 twins.
-fn twins(lobes: &[Lobe], alphas: &[f64], (pair, azimuth): &(Pair, Azimuth), out: &mut [f32]) {
+fn twins(lobes: &[Lobe], setting: &[At], (pair, azimuth): &(Pair, Azimuth), out: &mut [f32]) {
     let mut sums = [0.0; 3];
-    for (lobe, &alpha) in lobes.iter().zip(alphas) {
-        let [a, b] = (lobe.model.lobe)(pair, azimuth, &lobe.setting(alpha));
+    for (lobe, at) in lobes.iter().zip(setting) {
+        let [a, b] = (lobe.model.lobe)(pair, azimuth, &lobe.setting(at.alpha));
+        let scale = at.scale.at(pair.mu_i, pair.mu_e);
         for (sum, [weight_a, weight_b]) in sums.iter_mut().zip(&lobe.weights) {
-            *sum += weight_a * a + weight_b * b;
+            *sum += scale * (weight_a * a + weight_b * b);
         }
     }
     for (out, sum) in out.iter_mut().zip(sums) {

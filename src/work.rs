@@ -2,7 +2,8 @@
 //! in f64. The device gets them rounded to f32, the CPU path as they are.
 
 use crate::axis::Variable;
-use crate::mapped::{Fixed, MappedWork};
+use crate::factor::{Scale, product::Nodes};
+use crate::mapped::{Fixed, MappedWork, Source};
 use crate::models::{Integral, Sampling, Slopes, decade};
 use crate::pair::{Azimuth, MU_MIN, Pair, off_horizon};
 use crate::plan::{Lobe, Rule, TablePlan};
@@ -13,6 +14,7 @@ use crate::sampling::{SampleWork, Sampler};
 use crate::setting::Setting;
 use crate::slopes::SlopeWork;
 use crate::spread::{LARGEST, Matrix, Spread};
+use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::iter;
 
@@ -20,6 +22,8 @@ use std::iter;
 pub(crate) struct Work {
     /// α of each row of values, or of inner integrals: along the table's slowest axis, or at its sources.
     pub alphas: Vec<f64>,
+    /// What the lobe is multiplied with in each row of values; none: by nothing.
+    pub scales: Vec<Scale>,
     pub kind: WorkKind,
 }
 
@@ -83,7 +87,7 @@ impl Work {
     pub fn new(table: &TablePlan, lobe: &Lobe) -> Self {
         let alphas = table.alphas(lobe);
         match table.quantity.evaluation {
-            Evaluation::Value => Self { alphas, kind: values(table) },
+            Evaluation::Value => Self { alphas, scales: scales(table, lobe), kind: values(table) },
             Evaluation::Directional => integrals(table, lobe, alphas, &directions(table), &[1.0]),
             Evaluation::Hemispherical => {
                 let tolerance = table.rule_tolerance();
@@ -179,6 +183,18 @@ fn directions(table: &TablePlan) -> Vec<[f64; 2]> {
     thetas.into_iter().flat_map(|theta| phis.iter().map(move |&phi| [theta, phi])).collect()
 }
 
+/// What the lobe is multiplied with in each row.
+fn scales(table: &TablePlan, lobe: &Lobe) -> Vec<Scale> {
+    if lobe.factors.is_empty() {
+        return Vec::new();
+    }
+    let rows: Vec<_> = match table.axis(Variable::Roughness) {
+        Some(axis) => axis.values.iter().map(|&roughness| Some(roughness)).collect(),
+        None => vec![lobe.roughness],
+    };
+    rows.into_par_iter().map(|row| Scale::new(&lobe.factors, row)).collect()
+}
+
 fn values(table: &TablePlan) -> WorkKind {
     let of = |variable| table.axis(variable).map_or(&[][..], |axis| &axis.values);
     let (theta_i, theta_e) = (of(Variable::ThetaI), of(Variable::ThetaE));
@@ -228,10 +244,30 @@ fn integrals(table: &TablePlan, lobe: &Lobe, alphas: Vec<f64>, fixed: &[[f64; 2]
         Rule::Random { samples } => Some((Sampler::Random, samples)),
         _ => None,
     };
+    let new = |alphas, kind| Work { alphas, scales: Vec::new(), kind };
+    let mapped = |source: Source| {
+        let fixed = mus().into_iter().zip(fixed).map(|(mu, &[_, phi])| Fixed { mu, phi }).collect();
+        MappedWork::new(source, fixed, lobe.settings(&alphas), table.rule_tolerance())
+    };
+    // The plan refuses other rules for lobes with factors.
+    if !lobe.factors.is_empty() {
+        let source = match lobe.model.integral {
+            Integral::Slopes(slopes) => Source::Map(slopes.map),
+            Integral::Mapped(map) => Source::Map(map),
+            Integral::Smooth(counts) => Source::Product(Nodes { counts, kinked: false }),
+            Integral::Kinked(counts) => Source::Product(Nodes { counts, kinked: true }),
+            Integral::Delta(directional) => Source::Delta(directional),
+            Integral::Unbounded(_) => Source::Delta(|_, _| [f64::NAN; 2]),
+        };
+        // Of the split sum it is ωe that is fixed.
+        let fixed_is_exitant = table.quantity.variables == [Variable::Mu];
+        let work = mapped(source).times(scales(table, lobe), fixed_is_exitant);
+        return new(alphas, of(Inner::Mapped(work), weights.to_vec()));
+    }
     if let (Some((sampler, samples)), Integral::Slopes(slopes)) = (sampler, lobe.model.integral)
         && let Some(by) = &slopes.sampling
     {
-        return Work { alphas, kind: sampled(sampler, slopes, by, samples) };
+        return new(alphas, sampled(sampler, slopes, by, samples));
     }
     let kind = match (table.rule, lobe.model.integral) {
         (Rule::Gauss { theta, phi }, _) => smooth(gauss_cells(theta), gauss_azimuths(phi)),
@@ -245,11 +281,7 @@ fn integrals(table: &TablePlan, lobe: &Lobe, alphas: Vec<f64>, fixed: &[[f64; 2]
         (_, Integral::Slopes(slopes)) => {
             return slopes_work(table, lobe, slopes, [alphas, mus()], weights);
         }
-        (_, Integral::Mapped(map)) => {
-            let fixed = mus().into_iter().zip(fixed).map(|(mu, &[_, phi])| Fixed { mu, phi }).collect();
-            let work = MappedWork::new(map, fixed, lobe.settings(&alphas), table.rule_tolerance());
-            of(Inner::Mapped(work), weights.to_vec())
-        }
+        (_, Integral::Mapped(map)) => of(Inner::Mapped(mapped(Source::Map(map))), weights.to_vec()),
         (_, Integral::Delta(directional)) => {
             let mus = thetas.iter().map(|theta| theta.cos()).collect();
             of(Inner::Analytic { directional, mus }, weights.to_vec())
@@ -259,7 +291,7 @@ fn integrals(table: &TablePlan, lobe: &Lobe, alphas: Vec<f64>, fixed: &[[f64; 2]
             of(Inner::Analytic { directional: |_, _| [f64::NAN; 2], mus: mus() }, weights.to_vec())
         }
     };
-    Work { alphas, kind }
+    new(alphas, kind)
 }
 
 /// Fewer integrals than these are done one by one: they take some milliseconds at most, and to spread others over them
@@ -280,7 +312,7 @@ fn slopes_work(
         // azimuth and node more, an integral has a third of its error.
         let spare = usize::from(outer.len() > 1);
         let inner = Inner::Slopes(SlopeWork::new(slopes, mus, &lobe.settings(&alphas), tolerance, spare));
-        Work { alphas, kind: WorkKind::Integrals { inner, outer } }
+        Work { alphas, scales: Vec::new(), kind: WorkKind::Integrals { inner, outer } }
     };
     let direct = |alphas, mus| work(alphas, mus, vec![Matrix::row(weights.to_vec())]);
     // Azimuths repeat the μ of lobes that do not tell them.

@@ -5,6 +5,7 @@ mod common;
 
 use common::device;
 use gonio::bake::Unobserved;
+use gonio::factor::Compensation;
 use gonio::models::MODELS;
 use gonio::plan::Lobe;
 use gonio::points::Angles;
@@ -37,12 +38,16 @@ fn gltf(roughness: [f64; 2], metallic: [f64; 2], base_color: [f64; 2]) -> Materi
                 roughness: None,
                 parameters: Vec::new(),
                 weights: weights(),
+                compensation: Compensation::None,
+                factors: Vec::new(),
             },
             MaterialLobe {
                 model: "ggx".into(),
                 roughness: Some(Distribution::uniform(min, max)),
                 parameters: Vec::new(),
                 weights: weights(),
+                compensation: Compensation::None,
+                factors: Vec::new(),
             },
         ],
         metallic: Some(metallic),

@@ -6,6 +6,7 @@ mod common;
 use common::*;
 use gonio::axis::Variable::{DeltaPhi, Mu, ThetaE, ThetaI};
 use gonio::check::Check;
+use gonio::factor::Compensation;
 use gonio::gpu::{Kernel, compose, validate};
 use gonio::models::{self, Integral, MICROFACETS, Model};
 use gonio::plan::{INTEGRAL_F32, Plan, Precision, Selection, TablePlan};
@@ -175,6 +176,8 @@ fn scene(model: &str) -> Scene {
         roughness: Some(Distribution::constant(0.3)),
         parameters: Vec::new(),
         weights: Weights::Constant([[0.5; 3], [0.0; 3]]),
+        compensation: Compensation::None,
+        factors: Vec::new(),
     };
     let materials =
         vec![Material { name: "gold".into(), lobes: vec![lobe], metallic: None, base_color: None }];

@@ -5,6 +5,7 @@ mod common;
 
 use common::model;
 use gonio::axis::{Axis, Mapping, Positions, Variable};
+use gonio::factor::Compensation;
 use gonio::gpu::{Kernel, compose, validate};
 use gonio::models::MODELS;
 use gonio::plan::{Plan, Precision, Rule, Selection, TablePlan};
@@ -17,6 +18,8 @@ fn material(name: &str, model: &str, roughness: Option<Distribution>) -> Materia
         roughness,
         parameters: Vec::new(),
         weights: Weights::Constant([[0.5; 3], [0.0; 3]]),
+        compensation: Compensation::None,
+        factors: Vec::new(),
     };
     Material { name: name.into(), lobes: vec![lobe], metallic: None, base_color: None }
 }

@@ -7,6 +7,7 @@
 #[allow(dead_code, missing_docs)]
 mod make_demo_scene;
 
+use gonio::factor::Compensation;
 use gonio::plan::Rule;
 use gonio::scene::{Distribution, Material, Scene, SubjectRequest, Weights, read};
 use make_demo_scene::ROUGHNESS;
@@ -437,7 +438,12 @@ fn the_commented_recipe_is_read() {
     );
     assert_eq!(
         average.subject,
-        SubjectRequest::Basis { model: "ggx".into(), roughness: Some(0.5), parameters: Vec::new() }
+        SubjectRequest::Basis {
+            model: "ggx".into(),
+            roughness: Some(0.5),
+            parameters: Vec::new(),
+            compensation: Compensation::None,
+        }
     );
     assert!(brdf.place.contains("recipe.toml: line "));
 }

@@ -20,16 +20,24 @@ struct Azimuths {
     d: Azimuth,
 }
 
+/// A row as the host gives it: its place in the output, and what its values are multiplied with.
+struct Given {
+    pair: Pair,
+    place: real,
+    scale: real,
+}
+
 /// A row, and where it is stored.
 struct Row {
     pair: Pair,
+    scale: real,
     lobe: real,
     first: u32,
     is_there: bool,
 }
 
 @group(0) @binding(1) var<storage, read_write> values: array<vec4f>;
-@group(0) @binding(2) var<storage, read> rows: array<Pair>;
+@group(0) @binding(2) var<storage, read> rows: array<Given>;
 @group(0) @binding(3) var<uniform> quads: array<Quad, WINDOW>;
 
 const LANES = 8u;
@@ -55,8 +63,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 /// What is beyond the end does the last one over again: cheaper than a mask on every store.
 fn row_at(row: u32) -> Row {
     let there = min(row, job.end - 1u);
-    let pair = rows[there];
-    return Row(pair, lobe_row(pair, pair.own), (u32(pair.bin) * job.azimuths + job.nodes) * CHANNELS, there == row);
+    let given = rows[there];
+    let pair = given.pair;
+    let first = (u32(given.place) * job.azimuths + job.nodes) * CHANNELS;
+    return Row(pair, given.scale, lobe_row(pair, pair.own), first, there == row);
 }
 
 fn evaluate(row: Row, quad: u32, z: Quad, w: Weights) {
@@ -68,7 +78,9 @@ fn evaluate(row: Row, quad: u32, z: Quad, w: Weights) {
     let a1 = lobe(row.pair, z4.b, row.pair.own, row.lobe);
     let a2 = lobe(row.pair, z4.c, row.pair.own, row.lobe);
     let a3 = lobe(row.pair, z4.d, row.pair.own, row.lobe);
-    store(row.first + quad * CHANNELS, w, a0, a1, a2, a3);
+    // What the row is multiplied with is the weights' to bear: 1 changes no bit.
+    let s = row.scale;
+    store(row.first + quad * CHANNELS, Weights(s * w.r, s * w.g, s * w.b), a0, a1, a2, a3);
 }
 
 fn azimuths_of(z: Quad) -> Azimuths {

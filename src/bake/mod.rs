@@ -279,12 +279,16 @@ impl Path<'_> {
         if plan.quantity.evaluation != Evaluation::Value {
             return (plan.rule == Rule::Warped).then_some(plan.tolerance);
         }
-        Some(match self {
-            Self::Device(..) => plan.value_f32(),
-            Self::Cpu(Precision::F32) => STORED_F32,
-            // sin θi − sin θe, where both graze: their half sum is rounded near π/2; and what values make of it.
-            Self::Cpu(Precision::F64) => 1e-8 * plan.value_f32() / VALUE_F32,
-        })
+        let factors = plan.factor_error();
+        Some(
+            factors
+                + match self {
+                    Self::Device(..) => plan.value_f32(),
+                    Self::Cpu(Precision::F32) => STORED_F32,
+                    // sin θi − sin θe, where both graze: their half sum is rounded near π/2; and what values make of it.
+                    Self::Cpu(Precision::F64) => 1e-8 * plan.value_f32() / VALUE_F32,
+                },
+        )
     }
 
     /// The rule, and where it ran if that was not the evaluator's own place.
@@ -361,7 +365,7 @@ fn check_energy(plan: &TablePlan, table: &Table) -> Result<()> {
     let bound: f64 = plan
         .lobes
         .iter()
-        .map(|lobe| lobe.weights.as_flattened().iter().copied().fold(0.0, f64::max) * lobe.model.rho_bound)
+        .map(|lobe| lobe.weights.as_flattened().iter().copied().fold(0.0, f64::max) * lobe.rho_bound())
         .sum();
     for texel in 0..table.texels() {
         let channels = table.texel(texel).into_iter();

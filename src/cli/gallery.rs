@@ -5,6 +5,7 @@ use super::watch::Watch;
 use super::{HEADING, device_json, models as details, print_beside, print_json};
 use crate::bake::{Evaluator, Observer};
 use crate::error::Result;
+use crate::factor::Compensation;
 use crate::files::{MOST_SETTINGS, Radius, TableSet, escape};
 use crate::gpu::DeviceChoice;
 use crate::models::{FRESNELS, MASKINGS, MODELS, Model, Term};
@@ -123,6 +124,7 @@ fn entries() -> Result<Vec<Entry>> {
         ],
         view: View::of_model(film.name, &sets.map(String::from))?,
     });
+    entries.push(compensation(model)?);
     Ok(entries)
 }
 
@@ -132,6 +134,23 @@ fn parameters(model: &Model) -> Vec<String> {
         format!("{}: {} ({}{default})", p.name, p.what, p.range)
     };
     details::parameters(model).into_iter().map(line).collect()
+}
+
+/// What is lost between rough mirrors, and given back.
+fn compensation(model: &Model) -> Result<Entry> {
+    let names = Compensation::ALL.map(Compensation::name);
+    let sets = ["roughness=0.8".into(), "fresnel=none".into(), format!("compensation={}", names.join(","))];
+    let said = |c: Compensation| match c.source() {
+        "" => format!("{}: {}", c.name(), c.summary()),
+        source => format!("{}: {} ({source})", c.name(), c.summary()),
+    };
+    Ok(Entry {
+        stem: format!("{}_compensation", model.name),
+        title: format!("{} by compensation", model.name),
+        summary: format!("What compensation = {} does to {}", names.join(" | "), model.name),
+        facts: vec![("Compensation", Compensation::ALL.map(said).to_vec())],
+        view: View::of_model(model.name, &sets)?,
+    })
 }
 
 /// Stages all files; the manifest lists them.

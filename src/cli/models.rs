@@ -2,6 +2,7 @@
 
 use super::{HEADING, print, print_json};
 use crate::error::Result;
+use crate::factor::Compensation;
 use crate::models::{self, Component, FRESNELS, Integral, MASKINGS, MODELS, Metal, Model, Shape, Term};
 use serde_json::{Value, json};
 
@@ -145,6 +146,13 @@ pub(super) fn parameters(model: &Model) -> Vec<Parameter> {
         unit: "",
         default: Some(term.name.into()),
         what: term.summary.into(),
+    }));
+    all.extend(Compensation::is_for(model).then(|| Parameter {
+        name: "compensation",
+        range: Compensation::ALL.map(Compensation::name).join(" | "),
+        unit: "",
+        default: Some(Compensation::None.name().into()),
+        what: "what gives back the light that is lost between microfacets".into(),
     }));
     all.extend(model.components.iter().map(|&Component { name, weight, default }| Parameter {
         name: weight,

@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::mapped::{POINT, Sample};
 use crate::pair::{Azimuth, Pair};
 use crate::plan::{Lobe, Precision};
-use crate::points::Angles;
+use crate::points::{Angles, At};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -74,8 +74,8 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// Fills `values`, by setting, point and channel. A setting has an α for each lobe.
-    pub fn evaluate(&mut self, settings: &[Vec<f64>], angles: &[Angles], values: &mut [f32]) -> Result<()> {
+    /// Fills `values`, by setting, point and channel. A setting has an α and a factor for each lobe.
+    pub fn evaluate(&mut self, settings: &[Vec<At>], angles: &[Angles], values: &mut [f32]) -> Result<()> {
         let per_chunk = CHUNK / settings.len().clamp(1, SETTINGS);
         let groups = ranges(settings.len(), SETTINGS);
         let chunks: Vec<_> = groups
@@ -98,18 +98,30 @@ impl<'a> Points<'a> {
     }
 
     /// Starts a chunk, whose factors are made.
-    fn launch(&mut self, slot: usize, chunk: &Chunk, settings: &[Vec<f64>]) -> Result<()> {
+    fn launch(&mut self, slot: usize, chunk: &Chunk, settings: &[Vec<At>]) -> Result<()> {
         let Self { device, lobes, channels, factors, slots } = self;
         let Baker { device: wgpu, queue, .. } = &device.baker;
         let slot = &mut slots[slot];
         queue.write_buffer(&slot.points, 0, bytemuck::cast_slice(factors));
         let mut encoder = wgpu.create_command_encoder(&Default::default());
-        for (k, alphas) in settings.iter().enumerate() {
-            for ((pipeline, job), &alpha) in lobes.iter().zip(alphas) {
-                let (points, base) = (count(factors.len())?, count(k * factors.len())?);
-                let job = Job { end: points, base, alpha: alpha as f32, ..*job };
+        for (k, setting) in settings.iter().enumerate() {
+            for ((pipeline, job), At { alpha, scale }) in lobes.iter().zip(setting) {
+                let (end, base) = (count(factors.len())?, count(k * factors.len())?);
+                let job = Job { end, base, alpha: *alpha as f32, ..*job };
                 let job = device.baker.init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
-                let buffers = [&job, &slot.output, &slot.points];
+                // A lobe with a factor has points of its own, whose weights are that.
+                let weighed = (!scale.is_one()).then(|| {
+                    let times = |&point: &Factors| {
+                        let [.., mu_i, mu_e, _, _, _, _] = point.map(f64::from);
+                        let mut point = point;
+                        point[9] = scale.at(mu_i, mu_e) as f32;
+                        point
+                    };
+                    let weighed: Vec<_> = factors.par_iter().map(times).collect();
+                    device.baker.init(bytemuck::cast_slice(&weighed), wgpu::BufferUsages::STORAGE)
+                });
+                let points = weighed.as_ref().unwrap_or(&slot.points);
+                let buffers = [&job, &slot.output, points];
                 let step = Step {
                     pipeline: pipeline.clone(),
                     bind_group: device.baker.bind(pipeline, buffers.map(wgpu::Buffer::as_entire_binding)),

@@ -4,6 +4,7 @@ use super::baker::{Baker, count};
 use super::compose::{COARSE_NODES, Kernel, VALUE_WINDOW};
 use crate::check::stride;
 use crate::error::{Error, Result};
+use crate::factor::Scale;
 use crate::mapped::{MappedWork, POINT, Texel};
 use crate::models::{ALPHA_MIN_INTEGRAL, Model, SlopeCounts, is_fine};
 use crate::pair::{Azimuth, Pair};
@@ -51,19 +52,33 @@ pub(super) struct Rows {
     /// How many φi there are, and how many θe: a row is of an α, a θi, a φi and a θe, the last of which turns fastest.
     frames: usize,
     thetas_e: usize,
+    /// μi and μe of each pair, and what the lobe is multiplied with at each α.
+    cosines: Vec<[f64; 2]>,
+    scales: Vec<Scale>,
 }
 
-/// `Pair` of `shaders/pair.wgsl` in f32, the only precision of values on a device, with a row's place and α.
-type Row = [f32; 10];
-const PLACE: usize = 6;
+/// `Given` of `shaders/kernel/values.wgsl`, in f32: the only precision of values on a device.
+type Row = [f32; 12];
 const ALPHA: usize = 7;
+const PLACE: usize = 10;
+const SCALE: usize = 11;
 
 impl Rows {
-    fn new(alphas: &[f64], values: &ValueWork) -> Self {
-        let row = |pair: &Pair| pair.to_array().map(|x| x as f32);
+    fn new(alphas: &[f64], values: &ValueWork, scales: &[Scale]) -> Self {
+        let row = |pair: &Pair| {
+            let mut row = Row::default();
+            row.iter_mut().zip(pair.to_array()).for_each(|(out, x)| *out = x as f32);
+            row
+        };
         let ValueWork { pairs, frames, thetas_e, .. } = values;
-        let pairs = pairs.iter().map(row).collect();
-        Self { alphas: alphas.to_vec(), pairs, frames: frames.len(), thetas_e: *thetas_e }
+        Self {
+            alphas: alphas.to_vec(),
+            pairs: pairs.iter().map(row).collect(),
+            frames: frames.len(),
+            thetas_e: *thetas_e,
+            cosines: pairs.iter().map(|pair| [pair.mu_i, pair.mu_e]).collect(),
+            scales: scales.to_vec(),
+        }
     }
 
     /// Some of them as the kernel lays them out, those of a φi together: as many groups as there are φi.
@@ -74,9 +89,12 @@ impl Rows {
             let (outer, frame) = (outer / self.frames, outer % self.frames);
             let thetas_i = self.pairs.len() / self.thetas_e;
             let (alpha, theta_i) = (outer / thetas_i, outer % thetas_i);
-            let mut row = self.pairs[theta_i * self.thetas_e + theta_e];
+            let pair = theta_i * self.thetas_e + theta_e;
+            let mut row = self.pairs[pair];
+            let [mu_i, mu_e] = self.cosines[pair];
             // A tile has fewer rows than a float counts.
             row[PLACE] = (unit - units.start) as f32;
+            row[SCALE] = self.scales.get(alpha).map_or(1.0, |scale| scale.at(mu_i, mu_e)) as f32;
             row[ALPHA] = self.alphas[alpha] as f32;
             groups[frame].push(row);
         }
@@ -120,7 +138,7 @@ impl Stages {
                     precision: Precision::F32,
                     job: Job::new(lobe, 1.0),
                     inputs: vec![upload.quads(values)],
-                    rows: Some(Rows::new(&alphas, values)),
+                    rows: Some(Rows::new(&alphas, values, &work.scales)),
                     mapped: None,
                     per_unit: values.columns().div_ceil(4),
                     units: 1,

@@ -264,6 +264,7 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
             counts: Self::counts,
             branches: if F::POLYNOMIAL { N::BRANCHES } else { None },
             mirror_limit: Self::mirror_limit,
+            map: Self::MAP,
             sampling: match N::SAMPLES {
                 Some(part) => Some(Sampling { part, ndf: N::by_ndf::<M, F>, vndf: N::by_vndf::<M, F> }),
                 None => None,

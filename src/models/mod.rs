@@ -140,6 +140,8 @@ pub struct Slopes {
     pub(crate) branches: Option<Branches>,
     /// What α → 0 tends to.
     pub(crate) mirror_limit: fn(mu_e: f64, &Setting) -> [f64; 2],
+    /// The same by directions, for what is no lobe alone.
+    pub(crate) map: Map,
     /// What peers do in place of all that, if they can.
     pub(crate) sampling: Option<Sampling>,
 }

@@ -3,6 +3,7 @@
 use super::{DEFAULT_TOLERANCE, Lobe, Rule, TablePlan};
 use crate::axis::{Axis, Mapping, Positions, Variable};
 use crate::error::{Error, Result};
+use crate::factor::{Compensation, Factor};
 use crate::models::{self, Integral, MODELS, Model};
 use crate::optimise::optimise;
 use crate::quantity::{self, BRDF, Evaluation, QUANTITIES, Quantity, RHO_DH};
@@ -72,6 +73,9 @@ pub struct BasisWeight {
     pub parameters: BTreeMap<&'static str, f64>,
     /// The weight of each component, by the component's name.
     pub components: BTreeMap<String, Weight>,
+    /// What the basis is multiplied with beside, in words; E is a directional albedo.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub factors: Vec<String>,
 }
 
 /// One weight.
@@ -154,7 +158,10 @@ impl Plan {
                 plan.leave_out(other.name, "the selection asks for another quantity");
             }
         }
-        let lobes = plan.tables.iter().filter(|table| table.is_basis()).map(|table| &table.lobes[0]);
+        // Of materials `describe` says it.
+        let is_material = |table: &TablePlan| scene.materials.iter().any(|m| m.name == table.subject);
+        let tables = plan.tables.iter().filter(|table| table.is_basis() || !is_material(table));
+        let lobes = tables.flat_map(|table| &table.lobes);
         let bases: Vec<_> = lobes.map(|lobe| (lobe.model, lobe.parameters)).collect();
         bases.into_iter().for_each(|(model, parameters)| plan.require_basis(model, &parameters, None));
         plan.describe(&materials)?;
@@ -283,18 +290,38 @@ impl Plan {
             };
             for lobe in &material.lobes {
                 let model = models::find(&lobe.model)?;
-                for (places, of) in settings_of(lobe, model) {
-                    self.require_basis(model, &places, lobe.roughness.as_ref());
+                let constant = lobe.roughness.as_ref().filter(|r| r.is_constant()).map(Distribution::min);
+                let split = match &lobe.weights {
+                    Weights::Constant(weights) => lobes_of(lobe, model, *weights, constant)?,
+                    // Its colours are for the formulas to say.
+                    Weights::Textured(_) => settings_of(lobe, model)
+                        .into_iter()
+                        .map(|(parameters, _)| {
+                            let factors = lobe.factors.clone();
+                            Lobe { parameters, factors, ..Lobe::new(model, constant, Vec::new()) }
+                        })
+                        .collect(),
+                };
+                for part in &split {
+                    let own = lobe.roughness.as_ref().filter(|_| part.model == model);
+                    self.require_basis(part.model, &part.parameters, own);
                     let weight = |k: usize| match &lobe.weights {
-                        Weights::Constant(weights) => Weight::Constant(masked(weights[k], of)),
+                        Weights::Constant(_) => {
+                            Weight::Constant(std::array::from_fn(|channel| part.weights[channel][k]))
+                        }
                         Weights::Textured(formulas) => Weight::Textured(formulas[k].clone()),
                     };
-                    let components =
-                        model.components.iter().enumerate().map(|(k, c)| (c.name.to_string(), weight(k)));
+                    let components = part
+                        .model
+                        .components
+                        .iter()
+                        .enumerate()
+                        .map(|(k, c)| (c.name.to_string(), weight(k)));
                     plan.weights.push(BasisWeight {
-                        basis: model.name.into(),
-                        parameters: named(model, &places),
+                        basis: part.model.name.into(),
+                        parameters: named(part.model, &part.parameters),
                         components: components.collect(),
+                        factors: part.factors.iter().map(Factor::describe).collect(),
                     });
                 }
                 // Every weight of every format is at most 1: they multiply reflectances.
@@ -303,7 +330,8 @@ impl Plan {
                     Weights::Textured(_) => 1.0,
                 };
                 // Nothing of what is unbounded is nothing.
-                plan.rho_bound += if largest > 0.0 { largest * model.rho_bound } else { 0.0 };
+                let bound = split.iter().map(Lobe::rho_bound).fold(0.0, f64::max);
+                plan.rho_bound += if largest > 0.0 { largest * bound } else { 0.0 };
             }
             let serves = |t: &&TablePlan| match t.is_basis() {
                 true => material.lobes.iter().filter(|lobe| lobe.model == t.subject).any(|lobe| {
@@ -401,9 +429,13 @@ fn requested(request: &TableRequest, scene: &Scene, tolerance: f64) -> Result<Ta
     }
     let name = |subject: &str| request.name.clone().unwrap_or_else(|| format!("{subject}.{}", quantity.name));
     let table = match &request.subject {
-        SubjectRequest::Basis { model, roughness, parameters } => {
-            let basis = TablePlan::basis(name(model), quantity, models::find(model)?, *roughness, axes)?;
-            basis.with_parameters(parameters)?
+        SubjectRequest::Basis { model, roughness, parameters, compensation } => {
+            let subject = match compensation {
+                Compensation::None => model.clone(),
+                _ => format!("{model}-{}", compensation.name()),
+            };
+            let basis = TablePlan::basis(name(&subject), quantity, models::find(model)?, *roughness, axes)?;
+            basis.with_parameters(parameters)?.with_compensation(*compensation)?
         }
         SubjectRequest::Material(subject) => {
             TablePlan::material(name(subject), quantity, scene, subject, axes)?
@@ -465,14 +497,36 @@ pub(crate) fn constant_lobes(material: &Material) -> Result<Vec<Lobe>, String> {
             return Err("its roughness varies, so it has no single RGB table".to_string());
         }
         let model = models::find(&lobe.model).map_err(|e| e.to_string())?;
-        let of = |(parameters, of)| {
-            let (a, b) = (masked(*a, of), masked(*b, of));
-            let roughness = lobe.roughness.as_ref().map(Distribution::min);
-            Lobe { parameters, ..Lobe::new(model, roughness, (0..3).map(|c| [a[c], b[c]]).collect()) }
-        };
-        Ok(settings_of(lobe, model).into_iter().map(of).collect::<Vec<_>>())
+        let roughness = lobe.roughness.as_ref().map(Distribution::min);
+        lobes_of(lobe, model, [*a, *b], roughness).map_err(|e| e.to_string())
     };
     let lobes: Vec<_> = material.lobes.iter().map(split).collect::<Result<_, String>>()?;
+    Ok(lobes.into_iter().flatten().collect())
+}
+
+/// The lobes that a material's lobe with constant weights is made of.
+fn lobes_of(
+    lobe: &MaterialLobe,
+    model: &'static Model,
+    [a, b]: [[f64; 3]; 2],
+    roughness: Option<f64>,
+) -> Result<Vec<Lobe>> {
+    let of = |(parameters, of)| {
+        let (a, b) = (masked(a, of), masked(b, of));
+        let weights = (0..3).map(|c| [a[c], b[c]]).collect();
+        let factors = lobe.factors.clone();
+        lobe.compensation.lobes(Lobe { parameters, factors, ..Lobe::new(model, roughness, weights) }).map(
+            |lobes| {
+                // Those of the other channels alone, whose setting is another, are nothing.
+                let is_own =
+                    move |lobe: &Lobe| lobe.weights.iter().zip(of).any(|(w, of)| of && *w != [0.0; 2]);
+                lobes
+                    .into_iter()
+                    .filter(move |lobe| of == [true; 3] || lobe.factors.is_empty() || is_own(lobe))
+            },
+        )
+    };
+    let lobes = settings_of(lobe, model).into_iter().map(of).collect::<Result<Vec<_>>>()?;
     Ok(lobes.into_iter().flatten().collect())
 }
 
@@ -512,6 +566,10 @@ impl fmt::Display for Plan {
         for m in &self.materials {
             let bases: Vec<_> = m.weights.iter().map(|w| w.basis.as_str()).collect();
             write!(f, "  {}: {}", m.name, bases.join(" + "))?;
+            for (w, factor) in m.weights.iter().flat_map(|w| w.factors.iter().map(move |factor| (w, factor)))
+            {
+                write!(f, ", {} times {factor}", w.basis)?;
+            }
             if let Some(roughness) = m.roughness {
                 write!(f, ", roughness {}", range(roughness))?;
             }

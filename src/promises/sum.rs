@@ -5,6 +5,7 @@ use crate::axis::{Axis, Variable};
 use crate::bake::{Evaluator, Stages, Unobserved};
 use crate::check::Check;
 use crate::error::{Error, Result};
+use crate::factor::{Compensation, Factor, Scale};
 use crate::models::{Integral, Violation};
 use crate::plan::{INTEGRAL_F32, Lobe, TablePlan, VALUE_F32, constant_lobes};
 use crate::points::Points;
@@ -55,7 +56,8 @@ impl<'a> Sum<'a> {
             constant_lobes(&material.at(&setting)?).map_err(Error::input)
         };
         let parameters = parameters.collect::<Result<_>>()?;
-        Self::new(material.name.clone(), evaluator, parameters, Box::new(lobes), material.violation())
+        let violations = material.violation().into_iter().collect();
+        Self::new(material.name.clone(), evaluator, parameters, Box::new(lobes), violations)
     }
 
     /// A model over some of its parameters, by their names in recipes (`roughness` or `alpha`, and the weights
@@ -64,6 +66,19 @@ impl<'a> Sum<'a> {
     /// # Errors
     /// When the model has no parameter of such a name, or the device fails.
     pub fn model(evaluator: &'a Evaluator, lobe: Lobe, parameters: Vec<Parameter>) -> Result<Self> {
+        Self::compensated(evaluator, lobe, Compensation::None, parameters)
+    }
+
+    /// The same with energy compensation.
+    ///
+    /// # Errors
+    /// When the model has no parameter of such a name, is nothing to compensate, or the device fails.
+    pub fn compensated(
+        evaluator: &'a Evaluator,
+        lobe: Lobe,
+        compensation: Compensation,
+        parameters: Vec<Parameter>,
+    ) -> Result<Self> {
         let model = lobe.model;
         let known = |name: &str| {
             model.shape.is_some_and(|shape| name == "roughness" || name == shape.name)
@@ -91,9 +106,10 @@ impl<'a> Sum<'a> {
                     }
                 }
             }
-            Ok(vec![lobe])
+            compensation.lobes(lobe)
         };
-        Self::new(model.name.into(), evaluator, parameters, Box::new(lobes), model.violation())
+        let violations = model.violation().into_iter().collect();
+        Self::new(model.name.into(), evaluator, parameters, Box::new(lobes), violations)
     }
 
     fn new(
@@ -101,18 +117,26 @@ impl<'a> Sum<'a> {
         evaluator: &'a Evaluator,
         whole: Vec<Parameter>,
         lobes: LobesAt<'a>,
-        violation: Option<Violation>,
+        mut violations: Vec<Violation>,
     ) -> Result<Self> {
         let setting: Vec<_> = whole.iter().map(|parameter| parameter.high).collect();
         let first = lobes(&setting)?;
         let parameters = whole.iter().map(|p| with_values(p, &first)).collect::<Result<Vec<_>>>()?;
         let points = if has_values(&first) { Some(Points::new(evaluator, &first)?) } else { None };
-        let declared = violation.map(|Violation { property, bound, source }| Declared {
+        // What a factor breaks is said once, and of the largest bound.
+        for violation in first.iter().flat_map(|lobe| &lobe.factors).flat_map(Factor::violations) {
+            match violations.iter_mut().find(|known| known.property == violation.property) {
+                Some(known) if known.bound >= violation.bound => {}
+                Some(known) => *known = violation,
+                None => violations.push(violation),
+            }
+        }
+        let declared = violations.into_iter().map(|Violation { property, bound, source }| Declared {
             property,
             bound,
             citation: source.into(),
         });
-        let declared = declared.into_iter().collect();
+        let declared = declared.collect();
         Ok(Self { name, evaluator, whole, parameters, lobes, declared, points, last: (setting, first) })
     }
 
@@ -130,11 +154,38 @@ impl<'a> Sum<'a> {
         })
     }
 
+    /// Whether a factor makes a lobe that is there at the parameters' upper ends depend on which direction is which.
+    fn is_one_sided(&self) -> bool {
+        let high: Vec<_> = self.parameters.iter().map(|parameter| parameter.high).collect();
+        (self.lobes)(&high).unwrap_or_default().iter().any(|lobe| {
+            let scale = Scale::new(&lobe.factors, lobe.roughness);
+            let [there, back] = [scale.at(1.0, 0.3), scale.at(0.3, 1.0)];
+            let is_there = lobe.weights.iter().any(|weight| *weight != [0.0; 2]);
+            is_there && (there - back).abs() > 1e-3 * there.max(back)
+        })
+    }
+
+    /// The relative error of factors, at the least roughness: there they have the fewest digits.
+    fn factor_error(&self) -> f64 {
+        let low: Vec<_> = self.parameters.iter().map(|parameter| parameter.low).collect();
+        let lobes = (self.lobes)(&low).unwrap_or_default();
+        let error = |lobe: &Lobe| match &lobe.factors[..] {
+            [] => 0.0,
+            factors => Scale::new(factors, lobe.roughness).error(),
+        };
+        lobes.iter().map(error).fold(0.0, f64::max)
+    }
+
     /// ρ_dh by the reference, the largest of the channels.
     fn reference_rho(&self, setting: &[f64], theta_i: f64) -> Option<f64> {
         let mut rho = [0.0; CHANNELS];
         for lobe in &(self.lobes)(setting).ok()? {
-            let [a, b] = lobe.model.reference?.rho_dh(theta_i.cos().max(0.0), &lobe.setting_at(None));
+            let (reference, setting, mu) =
+                (lobe.model.reference?, lobe.setting_at(None), theta_i.cos().max(0.0));
+            let [a, b] = match &lobe.factors[..] {
+                [] => reference.rho_dh(mu, &setting),
+                _ => reference::Product::new(lobe, None)?.rho_dh(reference, mu, &setting, false),
+            };
             for (rho, [weight_a, weight_b]) in rho.iter_mut().zip(&lobe.weights) {
                 *rho += weight_a * a + weight_b * b;
             }
@@ -150,7 +201,8 @@ impl<'a> Sum<'a> {
         let about = Axis::listed(Variable::PhiI, PHIS.to_vec());
         let axes = axes.chain(model.is_anisotropic().then_some(about)).collect::<Result<_>>()?;
         let plan = TablePlan::basis(model.name, &RHO_DH, model, None, axes)?;
-        let plan = plan.with_places(lobe.parameters).with_tolerance(INTEGRAL_F32);
+        let mut plan = plan.with_places(lobe.parameters).with_tolerance(INTEGRAL_F32);
+        plan.lobes[0].factors.clone_from(&lobe.factors);
         self.evaluator.bake(&plan, Check::Sample(0), &mut Stages::default(), &Unobserved)
     }
 }
@@ -209,7 +261,12 @@ impl Subject for Sum<'_> {
             if lobe.model.refused(&lobe.parameters).is_some() {
                 return None; // nothing is promised of it
             }
-            let [a, b] = lobe.model.reference?.brdf(&at, &lobe.setting_at(None))?;
+            let ab = lobe.model.reference?.brdf(&at, &lobe.setting_at(None))?;
+            let factor = match &lobe.factors[..] {
+                [] => 1.0,
+                _ => reference::Product::new(lobe, None)?.at(at.theta_i.cos(), at.theta_e.cos()),
+            };
+            let [a, b] = ab.map(|x| x * factor);
             for (f, [weight_a, weight_b]) in f.iter_mut().zip(&lobe.weights) {
                 *f += weight_a * a + weight_b * b;
             }
@@ -229,23 +286,27 @@ impl Subject for Sum<'_> {
             let roughness = |lobe: &Lobe| lobe.roughness.unwrap_or(0.0);
             let columns = sorted(thetas.iter().copied());
             // A table for each setting of what it has no axis for, over the roughnesses that come with it.
-            let mut tables: Vec<(Parameters, Vec<f64>, Table)> = Vec::new();
+            let mut tables: Vec<(Parameters, &[Factor], Vec<f64>, Table)> = Vec::new();
             for (lobe, rho) in lobes.iter().zip(rho.chunks_exact_mut(thetas.len() * CHANNELS)) {
                 if lobe.model.refused(&lobe.parameters).is_some() {
                     continue; // nothing is promised of it
                 }
-                let made = tables.iter().position(|(parameters, ..)| *parameters == lobe.parameters);
+                let is_of = |lobe: &Lobe, parameters: &Parameters, factors: &[Factor]| {
+                    lobe.parameters == *parameters && lobe.factors == factors
+                };
+                let made = tables.iter().position(|(p, f, ..)| is_of(lobe, p, f));
                 let made = match made {
                     Some(made) => made,
                     None => {
-                        let alike = lobes.iter().filter(|other| other.parameters == lobe.parameters);
+                        let alike =
+                            lobes.iter().filter(|other| is_of(other, &lobe.parameters, &lobe.factors));
                         let roughnesses = sorted(alike.map(|lobe| roughness(lobe)));
                         let table = self.bake(lobe, roughnesses.clone(), columns.clone())?;
-                        tables.push((lobe.parameters, roughnesses, table));
+                        tables.push((lobe.parameters, &lobe.factors, roughnesses, table));
                         tables.len() - 1
                     }
                 };
-                let (_, roughnesses, table) = &tables[made];
+                let (.., roughnesses, table) = &tables[made];
                 let row = lobe.model.shape.map_or(0, |_| place(roughnesses, roughness(lobe)));
                 // Of azimuths, the one that reflects most.
                 let azimuths = if lobe.model.is_anisotropic() { PHIS.len() } else { 1 };
@@ -272,7 +333,7 @@ impl Subject for Sum<'_> {
             reciprocity: 1e-6,
             isotropy: 1e-6,
             bilateral: 0.0,
-            agreement: self.value_f32(),
+            agreement: self.value_f32() + self.factor_error(),
             energy: 2.0 * INTEGRAL_F32 * self.last.1.len() as f64,
         }
     }
@@ -291,7 +352,10 @@ impl Subject for Sum<'_> {
     /// linear in each weight, so its maximum over weights is at a corner of the ranges; of a shape both ends
     /// are tried and what is between, and θi on a list. Where the reference gains more than the device's
     /// tolerance there, the device must too.
-    fn shows(&self, _property: &str) -> bool {
+    fn shows(&self, property: &str) -> bool {
+        if property == "reciprocity" {
+            return self.is_one_sided();
+        }
         self.corners().chain(albedo::sweeps(&self.whole)).any(|setting: Vec<f64>| {
             let thetas = [0.0, 60.0, 80.0, 87.0, 89.5].map(f64::to_radians).into_iter().chain([FRAC_PI_2]);
             thetas.into_iter().any(|theta| {

@@ -31,7 +31,11 @@ impl Reference for Microfacet {
     }
 
     fn rho_dh(&self, mu: f64, setting: &Setting) -> [f64; 2] {
-        self.rho_dh_within(TOLERANCE, mu, setting)
+        self.rho_dh_within(TOLERANCE, mu, setting, &|_| 1.0)
+    }
+
+    fn rho_dh_times(&self, mu: f64, setting: &Setting, factor: &dyn Fn(f64) -> f64) -> [f64; 2] {
+        self.rho_dh_within(TOLERANCE, mu, setting, factor)
     }
 
     /// As the mean weighs ρ with 2μ, ρ may be the coarser the smaller μ is.
@@ -39,7 +43,7 @@ impl Reference for Microfacet {
         if setting.alpha == 0.0 && self.mirror(0.5, setting) == 1.0 {
             return self.fresnel.mean(setting);
         }
-        definition::rho_hh(|mu| self.rho_dh_within(TOLERANCE / mu, mu, setting), setting.alpha)
+        definition::rho_hh(|mu| self.rho_dh_within(TOLERANCE / mu, mu, setting, &|_| 1.0), setting.alpha)
     }
 
     fn factors(&self, angles: &Angles, setting: &Setting) -> Option<Factors> {
@@ -58,11 +62,17 @@ const PANEL: f64 = 3.0;
 
 impl Microfacet {
     /// As dωi = 4 (ωe·ωm) dωm (Walter et al. 2007, eq. 14), ρ = ∫ F D G2 (ωe·ωm) / μe dωm over the normals
-    /// that reflect ωe above the horizon.
-    fn rho_dh_within(&self, tolerance: f64, mu: f64, setting: &Setting) -> [f64; 2] {
+    /// that reflect ωe above the horizon; F times a factor of cos θi.
+    fn rho_dh_within(
+        &self,
+        tolerance: f64,
+        mu: f64,
+        setting: &Setting,
+        factor: &dyn Fn(f64) -> f64,
+    ) -> [f64; 2] {
         let mu = mu.clamp(MIN_MU, 1.0);
         if setting.alpha == 0.0 {
-            let g2 = self.mirror(mu, setting);
+            let g2 = self.mirror(mu, setting) * factor(mu);
             return self.fresnel.weights(mu, 1.0 - mu, setting).map(|weight| g2 * weight);
         }
         // With ωe at azimuth 0, the horizon falls from tan θm ~ 2/μ to ~ μ/2 as φ passes π/2, on the scale μ:
@@ -70,7 +80,7 @@ impl Microfacet {
         let reach = (FRAC_PI_2 / mu).asinh();
         let slice = |u: f64| {
             let (sin, cos) = (mu * u.sinh()).sin_cos();
-            self.slice(FINER * tolerance, 2.0 * mu * u.cosh(), mu, cos, -sin, setting)
+            self.slice(FINER * tolerance, 2.0 * mu * u.cosh(), mu, cos, -sin, setting, factor)
         };
         integrate(slice, &even_breaks(-reach, reach, PANEL), tolerance).value_or_nan()
     }
@@ -97,6 +107,7 @@ impl Microfacet {
         })
     }
 
+    #[allow(clippy::too_many_arguments)] // they are what one integral hands to the other
     /// The integral over θm at an azimuth φ of ωm, times `weight`: the tolerance holds for the product.
     ///
     /// tan θm = α sinh v resolves the peak (v < 1) as well as the tails (α e^v up to the horizon): per unit of v
@@ -110,6 +121,7 @@ impl Microfacet {
         sin_phi: f64,
         cos_phi: f64,
         setting: &Setting,
+        factor: &dyn Fn(f64) -> f64,
     ) -> [f64; 2] {
         let alpha = setting.alpha;
         let wo = DVec3::new(sin_of(mu), 0.0, mu);
@@ -132,7 +144,7 @@ impl Microfacet {
 
             // dωm = sin θm dθm dφ, dθm = cos²θm α cosh v dv.
             let solid_angle = sin_m * cos_m * cos_m * alpha * (1.0 + sinh * sinh).sqrt();
-            let value = d * g2 * cos_d / mu * solid_angle * weight;
+            let value = d * g2 * cos_d / mu * solid_angle * weight * factor(mu_i);
             self.fresnel.weights(cos_d, 1.0 - cos_d, setting).map(|fresnel| value * fresnel)
         };
         let horizon = (tan_horizon(mu, cos_phi) / alpha).asinh();
@@ -160,7 +172,7 @@ mod tests {
         let ggx = Microfacet { ndf: &Ggx, masking: &SmithCorrelated, fresnel: &Schlick };
         let centre = |k: usize| (k as f64 + 0.5) / 8.0;
         for (mu, roughness) in (0..64).map(|k| (centre(k % 8), centre(k / 8))) {
-            let at = |tolerance| ggx.rho_dh_within(tolerance, mu, &(roughness * roughness).into());
+            let at = |tolerance| ggx.rho_dh_within(tolerance, mu, &(roughness * roughness).into(), &|_| 1.0);
             let ([a, b], [c, d]) = (at(TOLERANCE), at(0.01 * TOLERANCE));
             let error = (a - c).abs().max((b - d).abs());
             assert!(error <= 1e-11, "μ = {mu}, roughness {roughness}: {error:e}");

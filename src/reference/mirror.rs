@@ -24,6 +24,10 @@ impl Reference for Mirror {
         self.fresnel.weights(mu, 1.0 - mu, setting)
     }
 
+    fn rho_dh_times(&self, mu: f64, setting: &Setting, factor: &dyn Fn(f64) -> f64) -> [f64; 2] {
+        self.rho_dh(mu, setting).map(|rho| rho * factor(mu))
+    }
+
     fn rho_hh(&self, setting: &Setting) -> [f64; 2] {
         self.fresnel.mean(setting)
     }

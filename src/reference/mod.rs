@@ -11,6 +11,7 @@ mod anisotropic;
 mod definition;
 mod diffuse;
 mod directions;
+mod factor;
 mod fresnel;
 mod masking;
 mod microfacet;
@@ -29,6 +30,7 @@ pub use diffuse::{
     oren_nayar::OREN_NAYAR,
 };
 pub use directions::{Angles, MIN_MU};
+pub use factor::Product;
 pub(crate) use fresnel::{
     Fresnel, conductor::Conductor, dielectric::Dielectric, f82::F82, none::Constant, schlick::Schlick,
     thin_film::ThinFilm,
@@ -67,6 +69,15 @@ pub trait Reference: Sync {
     /// ρ_hh = 2 ∫ ρ_dh(μ) μ dμ over [0, 1].
     fn rho_hh(&self, setting: &Setting) -> [f64; 2] {
         definition::rho_hh(|mu| self.rho_dh(mu, setting), setting.alpha)
+    }
+
+    /// ρ_dh of f times a factor of the other direction's cosine.
+    fn rho_dh_times(&self, mu: f64, setting: &Setting, factor: &dyn Fn(f64) -> f64) -> [f64; 2] {
+        let f = |angles: &Angles| {
+            let factor = factor(angles.theta_e.cos());
+            self.brdf(angles, setting).unwrap_or([f64::NAN; 2]).map(|f| f * factor)
+        };
+        definition::rho_dh_kinked(f, mu)
     }
 
     /// The factors of a microfacet model; `None` for any other, and where [`Reference::brdf`] is `None`.

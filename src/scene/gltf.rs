@@ -13,6 +13,7 @@ mod texels;
 
 use super::{Distribution, LeftOut, Material, MaterialLobe, Scene, Weights, metallic_roughness};
 use crate::error::{Error, Result};
+use crate::factor::Compensation;
 use ::gltf::json::{self, Root};
 use file::GltfFile;
 use std::collections::{BTreeMap, HashSet};
@@ -249,6 +250,8 @@ impl Source {
                 roughness: None,
                 parameters: Vec::new(),
                 weights: self.weights("gltf_diffuse", metallic, ["0.96 (1 − metallic) base_color", "0"]),
+                compensation: Compensation::None,
+                factors: Vec::new(),
             }),
         }
         lobes.push(MaterialLobe {
@@ -256,6 +259,8 @@ impl Source {
             roughness: Some(roughness),
             parameters: Vec::new(),
             weights: self.weights("ggx", metallic, ["0.04 (1 − metallic) + metallic base_color", "1"]),
+            compensation: Compensation::None,
+            factors: Vec::new(),
         });
         // Texels and vertex colours are at most 1, and may be 0.
         let [low, high] = [f64::min, f64::max].map(|f| self.base_color.into_iter().reduce(f).unwrap_or(1.0));

@@ -15,6 +15,7 @@ pub use recipe::parse as parse_recipe;
 
 use crate::axis::{Axis, Variable};
 use crate::error::{Error, Result};
+use crate::factor::{Compensation, Factor};
 use crate::plan::Rule;
 use crate::storage::Storage;
 #[cfg(feature = "scene")]
@@ -85,6 +86,10 @@ pub struct MaterialLobe {
     pub parameters: Vec<(String, [f64; 3])>,
     /// The weights of the model's components.
     pub weights: Weights,
+    /// How it gets back what single scattering loses.
+    pub compensation: Compensation,
+    /// What it is multiplied with beside, of the two cosines alone.
+    pub factors: Vec<Factor>,
 }
 
 /// How a material weighs the components (A, B) of a model.
@@ -132,6 +137,8 @@ pub enum SubjectRequest {
         roughness: Option<f64>,
         /// What the recipe gives of its other parameters.
         parameters: Vec<(String, f64)>,
+        /// How it gets back what single scattering loses.
+        compensation: Compensation,
     },
 }
 

@@ -5,7 +5,8 @@ mod document;
 use super::{Distribution, Material, MaterialLobe, Scene, SubjectRequest, TableRequest, Weights};
 use crate::axis::{Axis, MAX_COUNT, Mapping, Positions, Variable};
 use crate::error::{Error, Result};
-use crate::models::{self, Component, MODELS, Model, Shape};
+use crate::factor::Compensation;
+use crate::models::{self, Component, Integral, MODELS, Model, Shape};
 use crate::plan::{MAX_GAUSS, MAX_GRID, MAX_SAMPLES, Rule};
 use crate::quantity::{Evaluation, QUANTITIES};
 use crate::storage::Storage;
@@ -73,6 +74,7 @@ fn lobe(item: Item) -> Result<MaterialLobe> {
     keys.extend(model.parameters.iter().map(|parameter| parameter.name));
     keys.extend((!model.metals().is_empty()).then_some("metal"));
     keys.extend(model.components.iter().map(|component| component.weight));
+    keys.extend(Compensation::is_for(model).then_some(COMPENSATION));
     let fields = item.table(&keys)?;
 
     let roughness = match model.shape {
@@ -106,7 +108,31 @@ fn lobe(item: Item) -> Result<MaterialLobe> {
             (None, None) => return Err(fields.refuse(&format!("give its {key}"))),
         };
     }
-    Ok(MaterialLobe { model: model.name.into(), roughness, parameters, weights: Weights::Constant(weights) })
+    Ok(MaterialLobe {
+        model: model.name.into(),
+        roughness,
+        parameters,
+        weights: Weights::Constant(weights),
+        compensation: compensation(&fields, model)?,
+        factors: Vec::new(),
+    })
+}
+
+const COMPENSATION: &str = "compensation";
+
+/// `compensation = "kulla-conty"`
+fn compensation(fields: &Fields, model: &'static Model) -> Result<Compensation> {
+    let Some(item) = fields.get(COMPENSATION) else { return Ok(Compensation::None) };
+    if !Compensation::is_for(model) {
+        return Err(item.refuse(&format!("{} is no lobe of microfacets; leave this away", model.name)));
+    }
+    let compensation = item.one_of(Compensation::ALL.map(|kind| (kind.name(), kind)))?;
+    match model.integral {
+        Integral::Unbounded(why) if compensation != Compensation::None => {
+            Err(item.refuse(&format!("{} has no albedo ({why}); leave this away", model.name)))
+        }
+        _ => Ok(compensation),
+    }
 }
 
 /// One number for all channels, or three.
@@ -154,7 +180,7 @@ fn pair(item: Item) -> Result<[Item; 2]> {
 /// `[[tables]]`
 fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
     let mut keys = vec!["name", "quantity", "material", "model", "masking", "fresnel", "roughness"];
-    keys.extend(["axes", "grid", "rule", "storage", "tolerance"]);
+    keys.extend(["axes", "grid", "rule", "storage", "tolerance", COMPENSATION]);
     // A model's own, of which a table of a material or of another model says that it has none.
     let own = models::all().flat_map(|model| {
         let shape = model.shape.map(|shape| shape.name);
@@ -219,7 +245,7 @@ fn subject(
     match (fields.get("material"), fields.get("model")) {
         (Some(item), None) => {
             let material = item.one_of(materials.iter().map(|m| (m.name.as_str(), m)))?;
-            for key in ["masking", "fresnel", "roughness"].iter().chain(own) {
+            for key in ["masking", "fresnel", "roughness", COMPENSATION].iter().chain(own) {
                 if let Some(item) = fields.get(key) {
                     return Err(item.refuse("a material has its own; leave this away, or give a model"));
                 }
@@ -260,7 +286,9 @@ fn subject(
                 (true, Some(_)) => Err(FIXED),
                 (true, None) => Ok(()),
             };
-            Ok((SubjectRequest::Basis { model: model.name.into(), roughness, parameters }, varies))
+            let compensation = compensation(fields, model)?;
+            let model = model.name.into();
+            Ok((SubjectRequest::Basis { model, roughness, parameters, compensation }, varies))
         }
         (Some(_), Some(item)) => Err(item.refuse("a table is of a material or of a model; keep one of them")),
         (None, None) => Err(fields.refuse("say of what: material = \"NAME\" or model = \"NAME\"")),

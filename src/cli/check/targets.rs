@@ -5,6 +5,7 @@ use crate::axis::Variable;
 use crate::bake::Evaluator;
 use crate::cli::subject;
 use crate::error::{Error, Result};
+use crate::factor::Compensation;
 use crate::models::{self, Model};
 use crate::plan::{Lobe, constant_lobes};
 use crate::promises::{Parameter, Sum};
@@ -21,6 +22,7 @@ pub struct Target<'a> {
 pub fn model<'a>(args: &Args, name: &str, evaluator: &'a Evaluator) -> Result<Target<'a>> {
     let mut model = models::find(name)?;
     let (mut fixed, mut ranges) = (Vec::new(), Vec::new());
+    let mut compensation = Compensation::None;
     for set in &args.set {
         let (key, value) = subject::key_value(set).map_err(|error| {
             Error::input(format!("{error}; or KEY=LOW..HIGH for a range, as in --set alpha=1e-6..1"))
@@ -62,14 +64,19 @@ pub fn model<'a>(args: &Args, name: &str, evaluator: &'a Evaluator) -> Result<Ta
             ranges.iter().map(|range| (range.name.as_str(), format!("{:?}", end(range)))).collect();
         let ranged = ranged.iter().map(|(key, value)| (*key, value.as_str()));
         let scene = subject::model(model.name, fixed.iter().copied().chain(ranged))?;
-        lobe = constant_lobes(&scene.materials[0]).map_err(Error::input)?.pop();
+        let mut material = scene.materials[0].clone();
+        // The subject does it, at each of its settings.
+        for lobe in &mut material.lobes {
+            compensation = std::mem::take(&mut lobe.compensation);
+        }
+        lobe = constant_lobes(&material).map_err(Error::input)?.pop();
     }
     let lobe = lobe.ok_or_else(|| Error::Internal("a model without a lobe".into()))?;
     let mut command = format!("gonio eval --model {}", model.name);
     for (key, value) in &fixed {
         command += &format!(" --set {}", quoted(&format!("{key}={value}")));
     }
-    Ok(Target { subject: Sum::model(evaluator, lobe, ranges)?, command })
+    Ok(Target { subject: Sum::compensated(evaluator, lobe, compensation, ranges)?, command })
 }
 
 /// Every basis, over all roughnesses that the scene gives it and all weights, and every material.

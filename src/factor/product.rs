@@ -1,0 +1,84 @@
+//! Directions for a diffuse lobe times factors: Gauss–Legendre in θ up to 60°, and from there in asinh(μ/δ), in which
+//! the factors are analytic; panels end at kinks.
+
+use super::Scale;
+use crate::mapped::Sample;
+use crate::pair::{Azimuth, Pair};
+use crate::quadrature::{Node, gauss_legendre};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Below it, θ ≤ 60°, f is smooth in θ; above it factors are in asinh(μ/δ).
+const SPLIT: f64 = 0.5;
+
+/// A diffuse lobe's own rule.
+#[derive(Clone, Copy)]
+pub(crate) struct Nodes {
+    /// In θe and in δφ, in each panel, for a tolerance.
+    pub counts: fn(tolerance: f64) -> [usize; 2],
+    /// Whether f has kinks at θe = θi, and where ωi and ωe are perpendicular in azimuth.
+    pub kinked: bool,
+}
+
+impl Nodes {
+    /// Nodes of a panel in μ: an e-fold of asinh(μ/δ) takes one or two where the lobe alone takes few.
+    fn counts(&self, scale: &Scale, tolerance: f64) -> [usize; 3] {
+        let [theta, phi] = (self.counts)(tolerance);
+        let folds = (SPLIT / scale.turns_at()).asinh();
+        let per_fold = 0.5 - 0.25 * tolerance.log10();
+        [theta + 4, theta + 4 + (folds * per_fold) as usize, phi]
+    }
+
+    pub fn most(&self, scale: &Scale, tolerance: f64) -> usize {
+        const KINKS: usize = 4;
+        let [theta, mu, phi] = self.counts(scale, tolerance);
+        (1 + KINKS) * (theta + mu) * phi * 2
+    }
+
+    /// Directions for a fixed cosine, which weigh cos θ dω.
+    pub fn samples(&self, mu: f64, scale: &Scale, tolerance: f64) -> Vec<Sample> {
+        let [theta, steep, phi] = self.counts(scale, tolerance).map(gauss_legendre);
+        let mut kinks = scale.kinks(mu);
+        kinks.extend(self.kinked.then_some(mu));
+        let panels = |[low, high]: [f64; 2]| {
+            let mut ends = vec![low];
+            ends.extend(kinks.iter().copied().filter(|&kink| low < kink && kink < high));
+            ends.push(high);
+            ends.sort_by(f64::total_cmp);
+            ends
+        };
+        let mut directions = Vec::new();
+        for ends in panels([SPLIT, 1.0]).windows(2) {
+            // θ falls as μ rises.
+            let [from, to] = [ends[1].acos(), ends[0].acos()];
+            directions.extend(theta.iter().map(|node| {
+                let (sin, cos) = (from + (to - from) * node.x).sin_cos();
+                (cos, sin, (to - from) * node.weight * sin * cos)
+            }));
+        }
+        let delta = scale.turns_at();
+        for ends in panels([0.0, SPLIT]).windows(2) {
+            let [from, to] = [ends[0], ends[1]].map(|mu| (mu / delta).asinh());
+            directions.extend(steep.iter().map(|node| {
+                let u = from + (to - from) * node.x;
+                let cos = delta * u.sinh();
+                (cos, ((1.0 - cos) * (1.0 + cos)).sqrt(), (to - from) * node.weight * cos * delta * u.cosh())
+            }));
+        }
+        let azimuths: Vec<_> = if self.kinked {
+            [0.0, FRAC_PI_2].into_iter().flat_map(|start| turn(&phi, start, FRAC_PI_2)).collect()
+        } else {
+            turn(&phi, 0.0, PI).collect()
+        };
+        let sin = ((1.0 - mu) * (1.0 + mu)).sqrt();
+        let sample = |&(cos_e, sin_e, weight): &(f64, f64, f64)| {
+            let pair = Pair::of_cosines_and_sines([mu, cos_e], [sin, sin_e]);
+            azimuths.iter().map(move |&(azimuth, width)| Sample { pair, azimuth, weight: weight * width })
+        };
+        directions.iter().flat_map(sample).collect()
+    }
+}
+
+/// Azimuths δφ with their mirror images.
+fn turn(rule: &[Node], start: f64, width: f64) -> impl Iterator<Item = (Azimuth, f64)> {
+    rule.iter().map(move |node| (Azimuth::new(start + width * node.x), 2.0 * width * node.weight))
+}

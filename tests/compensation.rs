@@ -1,0 +1,304 @@
+//! Promises of lobes times factors: with energy compensation a white furnace is white, coloured surfaces keep their
+//! energy, what is reciprocal stays so, and values and integrals agree with the f64 reference, which has albedos of
+//! its own.
+
+mod common;
+
+use common::*;
+use gonio::axis::Axis;
+use gonio::axis::Variable::{DeltaPhi, Mu, Roughness, ThetaE, ThetaI};
+use gonio::bake::Unobserved;
+use gonio::check::Check;
+use gonio::factor::{Albedo, Compensation, Factor};
+use gonio::plan::{INTEGRAL_F32, Lobe, Plan, Rule, Selection, TablePlan, VALUE_F32};
+use gonio::points::{Angles, Points};
+use gonio::promises::{Options, Parameter, Sum, Verdict, check};
+use gonio::quantity::{BRDF, QUANTITIES, Quantity, RHO_DH, RHO_HH, SPLIT_SUM};
+use gonio::scene::{Scene, parse_recipe};
+use std::path::Path;
+
+const WHITE: &str = "ggx-smith-correlated-none";
+const MUS: [f64; 9] = [1e-6, 1e-4, 1e-3, 0.01, 0.05, 0.2, 0.5, 0.8, 1.0];
+const ROUGHNESS: [f64; 6] = [0.0, 0.03, 0.1, 0.3, 0.6, 1.0];
+
+/// A basis with compensation over roughness and some directions.
+fn compensated(name: &str, kind: Compensation, quantity: &'static Quantity, tolerance: f64) -> TablePlan {
+    let mut axes = vec![listed(Roughness, &ROUGHNESS)];
+    match quantity.variables {
+        [] => {}
+        [Mu] => axes.push(listed(Mu, &MUS)),
+        _ => axes.push(listed(ThetaI, &MUS.map(f64::acos))),
+    }
+    let plan = TablePlan::basis("t", quantity, model(name), None, axes).unwrap();
+    plan.with_compensation(kind).unwrap().with_tolerance(tolerance)
+}
+
+/// Kulla & Conty with F = 1: every direction sends all back, at every roughness, on the device and in f64.
+#[test]
+fn what_is_missing_makes_the_furnace_white() {
+    for evaluator in evaluators() {
+        for tolerance in [1e-2, 1e-4, INTEGRAL_F32] {
+            for quantity in [&RHO_DH, &RHO_HH, &SPLIT_SUM] {
+                let table = bake(
+                    evaluator,
+                    &compensated(WHITE, Compensation::KullaConty, quantity, tolerance),
+                    Check::Sample(0),
+                );
+                let worst = table.values.iter().map(|rho: f64| (rho - 1.0).abs()).fold(0.0, f64::max);
+                println!("{} {} to {tolerance}: {worst:.1e}", table.precision, quantity.name);
+                // Two lobes, each to the tolerance.
+                assert!(worst <= 2.0 * tolerance, "{}: {worst}", quantity.name);
+            }
+        }
+    }
+}
+
+/// Turquin with F = 1: every view gets all that could reach it. A direction of incidence may send back more.
+#[test]
+fn what_is_restored_is_white_to_every_view() {
+    for evaluator in evaluators() {
+        let plan = compensated(WHITE, Compensation::Turquin, &SPLIT_SUM, INTEGRAL_F32);
+        let table = bake(evaluator, &plan, Check::Sample(0));
+        let worst = table.values.iter().map(|rho: f64| (rho - 1.0).abs()).fold(0.0, f64::max);
+        println!("{}: {worst:.1e}", table.precision);
+        assert!(worst <= INTEGRAL_F32, "{worst}");
+        // Their mean is white too, whichever direction is fixed.
+        let plan = compensated(WHITE, Compensation::Turquin, &RHO_HH, INTEGRAL_F32);
+        let mean = bake(evaluator, &plan, Check::Sample(0));
+        assert!(mean.values.iter().all(|rho: f64| (rho - 1.0).abs() <= INTEGRAL_F32), "{:?}", mean.values);
+        let plan = compensated(WHITE, Compensation::Turquin, &RHO_DH, INTEGRAL_F32);
+        let most = bake(evaluator, &plan, Check::Sample(0)).values.iter().fold(0.0, f64::max);
+        println!("of a direction of incidence: {most}");
+        assert!(most > 1.01, "{most}");
+    }
+}
+
+/// Every integral agrees with the reference, whose albedos are its own, to each tolerance.
+#[test]
+fn integrals_agree_with_the_reference() {
+    for kind in [Compensation::KullaConty, Compensation::Turquin] {
+        for name in [WHITE, "beckmann-smith-separable-none", "ggx-smith-correlated-dielectric"] {
+            for quantity in QUANTITIES.into_iter().filter(|q| q.name != "brdf") {
+                for tolerance in [1e-2, 1e-4, INTEGRAL_F32] {
+                    let plan = compensated(name, kind, quantity, tolerance);
+                    let table = bake(device(), &plan, Check::Sample(24));
+                    let worst = table.error.measured_max.unwrap();
+                    println!("{name} {} {} to {tolerance}: {worst:.1e}", kind.name(), quantity.name);
+                    assert!(worst <= tolerance, "{name} {}: {:?}", quantity.name, table.error);
+                }
+            }
+        }
+    }
+}
+
+fn values(lobes: Vec<Lobe>, roughness: &[f64]) -> TablePlan {
+    let thetas = [0.0, 0.3, 0.9, 1.3, 1.5, 1.57];
+    let axes = vec![
+        listed(Roughness, roughness),
+        listed(ThetaI, &thetas),
+        listed(ThetaE, &thetas),
+        listed(DeltaPhi, &[0.0, 0.01, 0.7, 2.0, 3.0]),
+    ];
+    let white = TablePlan::basis("t", &BRDF, model(WHITE), None, axes).unwrap();
+    TablePlan { lobes, ..white }
+}
+
+/// Values agree to their f32 budget and what E leaves in the factor, 20 · 1e-10/(1 − E_avg) relative.
+#[test]
+fn values_agree_with_the_reference() {
+    let unit = Lobe::new(model(WHITE), None, vec![[1.0, 0.0]]);
+    for kind in [Compensation::KullaConty, Compensation::Turquin] {
+        for (roughness, budget) in [(&[0.3, 0.6, 1.0][..], 1e-5), (&[0.1][..], 1e-4)] {
+            let plan = values(kind.lobes(unit.clone()).unwrap(), roughness).with_tolerance(1e-3);
+            for evaluator in evaluators() {
+                let table = bake(evaluator, &plan, Check::All);
+                let (worst, estimate) = (table.error.measured_max.unwrap(), table.error.estimate.unwrap());
+                println!(
+                    "{} {} at {roughness:?}: {worst:.1e} of {estimate:.1e}",
+                    kind.name(),
+                    table.precision
+                );
+                assert!(worst <= estimate, "{:?}", table.error);
+                assert!(estimate <= budget, "{estimate}");
+            }
+        }
+    }
+}
+
+/// The other factors, on lobes of each kind of integral: a coat, what is below it, and what is below a sheen.
+#[test]
+fn coats_and_sheen_agree_with_the_reference() {
+    let sheen = Albedo { model: model(WHITE), roughness: Some(0.7), parameters: model(WHITE).defaults() };
+    let factors = [
+        vec![Factor::Coat { weight: 0.8 }],
+        vec![Factor::BelowCoat { weight: 1.0 }],
+        vec![Factor::BelowSheen { of: sheen, most: 0.6 }, Factor::BelowCoat { weight: 0.5 }],
+    ];
+    for factors in factors {
+        for name in [WHITE, "lambert", "oren-nayar", "mirror-none"] {
+            let Ok(model) = gonio::models::find(name) else { continue };
+            let names: Vec<_> = factors.iter().map(Factor::name).collect();
+            for quantity in [&RHO_DH, &SPLIT_SUM] {
+                for tolerance in [1e-2, 1e-4, INTEGRAL_F32] {
+                    let mut axes = if model.shape.is_some() {
+                        vec![listed(Roughness, &[0.1, 0.5, 1.0])]
+                    } else {
+                        vec![]
+                    };
+                    axes.push(match quantity.variables {
+                        [Mu] => listed(Mu, &MUS),
+                        _ => listed(ThetaI, &MUS.map(f64::acos)),
+                    });
+                    let plan = TablePlan::basis("t", quantity, model, None, axes).unwrap();
+                    let mut plan = plan.with_tolerance(tolerance);
+                    plan.lobes[0].factors.clone_from(&factors);
+                    let table = bake(device(), &plan, Check::All);
+                    let worst = table.error.measured_max.unwrap();
+                    println!("{name} {names:?} {} to {tolerance}: {worst:.1e}", quantity.name);
+                    assert!(worst <= tolerance, "{name} {names:?}: {:?}", table.error);
+                }
+            }
+            if !model.is_delta() {
+                let lobe = Lobe { factors: factors.clone(), ..Lobe::new(model, None, vec![[1.0, 0.0]]) };
+                let mut plan = values(vec![lobe], &[0.3, 1.0]);
+                if model.shape.is_none() {
+                    plan.axes.remove(0);
+                }
+                let table = bake(device(), &plan, Check::All);
+                let worst = table.error.measured_max.unwrap();
+                println!("{name} {names:?} values: {worst:.1e}");
+                assert!(worst <= model.value_f32 + VALUE_F32, "{name}: {:?}", table.error);
+            }
+        }
+    }
+}
+
+/// At α → 0 nothing is missing: a lobe is as it was.
+#[test]
+fn compensation_vanishes_with_the_roughness() {
+    for kind in [Compensation::KullaConty, Compensation::Turquin] {
+        for evaluator in evaluators() {
+            let at = |compensation: Compensation| {
+                let axes = vec![listed(Roughness, &[0.0]), listed(ThetaI, &[0.0, 0.7, 1.5])];
+                let plan = TablePlan::basis("t", &RHO_DH, model(WHITE), None, axes).unwrap();
+                bake(evaluator, &plan.with_compensation(compensation).unwrap(), Check::All).values
+            };
+            assert_eq!(at(kind), at(Compensation::None));
+        }
+    }
+}
+
+/// A list of points and a table of values are the same numbers.
+#[test]
+fn points_have_the_factors_of_tables() {
+    for kind in [Compensation::KullaConty, Compensation::Turquin] {
+        let lobes = kind.lobes(Lobe::new(model(WHITE), Some(0.8), vec![[1.0, 0.0]])).unwrap();
+        for evaluator in evaluators() {
+            let angles = Angles { theta_i: 0.4, phi_i: 0.0, theta_e: 1.2, phi_e: 3.0 };
+            let mut points = Points::new(evaluator, &lobes).unwrap();
+            let (mut alone, mut swept) = (Vec::new(), Vec::new());
+            points.evaluate(&[angles], &mut alone).unwrap();
+            points.sweep(&[0.64], &[angles], &mut swept).unwrap();
+            let axes = vec![
+                listed(ThetaI, &[0.4]),
+                listed(ThetaE, &[1.2]),
+                listed(DeltaPhi, &[angles.delta_phi().abs()]),
+            ];
+            let plan = TablePlan::basis("t", &BRDF, model(WHITE), Some(0.8), axes).unwrap();
+            let table = bake(evaluator, &plan.with_compensation(kind).unwrap(), Check::All);
+            let value: f64 = table.values.iter().sum();
+            assert!((f64::from(alone[0]) / value - 1.0).abs() < 1e-6, "{alone:?} {value}");
+            assert_eq!(alone, swept);
+        }
+    }
+}
+
+/// Reciprocal and of no more energy than came, or as declared.
+#[test]
+fn promises_are_kept_or_declared() {
+    let subject = |kind: Compensation, name: &str| {
+        let model = model(name);
+        let weights = vec![[1.0, if model.components.len() > 1 { 1.0 } else { 0.0 }]; 3];
+        let ranges =
+            vec![Parameter::new("roughness", 0.3, 1.0).unwrap(), Parameter::new("f0", 0.5, 1.0).unwrap()];
+        Sum::compensated(device(), Lobe::new(model, Some(1.0), weights), kind, ranges).unwrap()
+    };
+    for name in ["ggx", WHITE] {
+        for (kind, broken) in
+            [(Compensation::KullaConty, &[][..]), (Compensation::Turquin, &["reciprocity", "energy"][..])]
+        {
+            let options = Options { budget: 200_000, search: true };
+            let report = check(&mut subject(kind, name), &options, &Unobserved).unwrap();
+            for finding in &report.findings {
+                println!(
+                    "{name} {} {}: {:?} {}",
+                    kind.name(),
+                    finding.property,
+                    finding.verdict,
+                    finding.said
+                );
+                let expected =
+                    if broken.contains(&finding.property) { Verdict::Declared } else { Verdict::Kept };
+                assert_eq!(finding.verdict, expected, "{name} {} {finding:?}", kind.name());
+            }
+        }
+    }
+}
+
+fn recipe(text: &str) -> gonio::Result<Scene> {
+    parse_recipe(Path::new("test.toml"), text.as_bytes())
+}
+
+/// Recipes name it, plans say it, and what cannot be compensated is refused in words.
+#[test]
+fn recipes_and_plans_say_it() {
+    let scene = recipe(
+        r#"
+        [materials.gold]
+        lobes = [{ model = "ggx", roughness = 0.5, f0 = [1.0, 0.78, 0.34], compensation = "kulla-conty" }]
+        [[tables]]
+        material = "gold"
+        quantity = "rho_dh"
+        [[tables]]
+        model = "ggx"
+        fresnel = "none"
+        compensation = "turquin"
+        quantity = "split_sum"
+        axes = { roughness = 4, mu = 4 }
+        "#,
+    )
+    .unwrap();
+    let plan = Plan::new(&scene, &Selection::default()).unwrap();
+    let bases: Vec<_> = plan.materials[0].weights.iter().map(|weight| weight.basis.as_str()).collect();
+    assert_eq!(bases, ["ggx", "lambert", "lambert", "lambert"]); // one for each F_avg
+    assert!(plan.materials[0].weights[1].factors[0].contains("Kulla & Conty"));
+    assert!(plan.to_string().contains("F_avg = 0.790476"), "{plan}");
+    assert!(
+        !plan.left_out.iter().any(|left| left.what == "lambert" || left.what == "ggx"),
+        "{:?}",
+        plan.left_out
+    );
+    assert_eq!(plan.tables[1].name, "ggx-smith-correlated-none-turquin.split_sum");
+    let table = bake(device(), &plan.tables[0], Check::Sample(8));
+    assert!(table.error.measured_max.unwrap() <= plan.tables[0].tolerance);
+
+    for (text, why) in [
+        (r#"model = "lambert", albedo = 0.5, compensation = "turquin""#, "compensation"),
+        (r#"model = "ggx", roughness = 0.5, f0 = 1, compensation = "turkey""#, "turquin"),
+        (
+            r#"model = "ggx", roughness = 0.5, f0 = 1, masking = "none", compensation = "turquin""#,
+            "no albedo",
+        ),
+    ] {
+        let error = recipe(&format!("[materials.a]\nlobes = [{{ {text} }}]")).unwrap_err().to_string();
+        assert!(error.contains(why), "{error}");
+    }
+    let scene =
+        recipe("[[tables]]\nmodel = \"ggx\"\ncompensation = \"turquin\"\nquantity = \"split_sum\"").unwrap();
+    let error = Plan::new(&scene, &Selection::default()).unwrap_err().to_string();
+    assert!(error.contains("not linear in F0"), "{error}");
+    let grid =
+        compensated(WHITE, Compensation::Turquin, &RHO_DH, 1e-2).with_rule(Rule::Grid { theta: 8, phi: 8 });
+    assert!(grid.unwrap_err().to_string().contains("warped"));
+    let _ = Axis::natural(Mu, 4);
+}
