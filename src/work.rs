@@ -95,7 +95,9 @@ impl Work {
                 let more =
                     |s: &Setting| lobe.model.microfacet.map_or(0, |made| (made.mean_nodes)(s, tolerance));
                 let more = settings.iter().map(more).max().unwrap_or(0);
-                let nodes = gauss_legendre(MEAN_NODES[decade(tolerance)] + more);
+                // A factor turns ρ where the lobe alone does not: of a restored lobe 16 nodes leave 9e-6.
+                let share = if lobe.factors.is_empty() { 1.0 } else { 0.01 };
+                let nodes = gauss_legendre(MEAN_NODES[decade(share * tolerance)] + more);
                 let [thetas, weights]: [Vec<_>; 2] = match lobe.model.integral {
                     // ρ_hh = ∫ ρ sin 2θ dθ: a kink at θe = θi leaves odd powers of sin θ in ρ.
                     Integral::Kinked(_) => {

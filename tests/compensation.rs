@@ -5,7 +5,7 @@
 mod common;
 
 use common::*;
-use gonio::axis::Axis;
+
 use gonio::axis::Variable::{DeltaPhi, Mu, Roughness, ThetaE, ThetaI};
 use gonio::bake::Unobserved;
 use gonio::check::Check;
@@ -77,11 +77,11 @@ fn what_is_restored_is_white_to_every_view() {
 #[test]
 fn integrals_agree_with_the_reference() {
     for kind in [Compensation::KullaConty, Compensation::Turquin] {
-        for name in [WHITE, "beckmann-smith-separable-none", "ggx-smith-correlated-dielectric"] {
+        for name in [WHITE, "ggx-smith-correlated-dielectric"] {
             for quantity in QUANTITIES.into_iter().filter(|q| q.name != "brdf") {
                 for tolerance in [1e-2, 1e-4, INTEGRAL_F32] {
                     let plan = compensated(name, kind, quantity, tolerance);
-                    let table = bake(device(), &plan, Check::Sample(24));
+                    let table = bake(device(), &plan, Check::Sample(12));
                     let worst = table.error.measured_max.unwrap();
                     println!("{name} {} {} to {tolerance}: {worst:.1e}", kind.name(), quantity.name);
                     assert!(worst <= tolerance, "{name} {}: {:?}", quantity.name, table.error);
@@ -198,7 +198,7 @@ fn points_have_the_factors_of_tables() {
             let mut points = Points::new(evaluator, &lobes).unwrap();
             let (mut alone, mut swept) = (Vec::new(), Vec::new());
             points.evaluate(&[angles], &mut alone).unwrap();
-            points.sweep(&[0.64], &[angles], &mut swept).unwrap();
+            points.sweep(&[0.8 * 0.8], &[angles], &mut swept).unwrap();
             let axes = vec![
                 listed(ThetaI, &[0.4]),
                 listed(ThetaE, &[1.2]),
@@ -300,5 +300,4 @@ fn recipes_and_plans_say_it() {
     let grid =
         compensated(WHITE, Compensation::Turquin, &RHO_DH, 1e-2).with_rule(Rule::Grid { theta: 8, phi: 8 });
     assert!(grid.unwrap_err().to_string().contains("warped"));
-    let _ = Axis::natural(Mu, 4);
 }

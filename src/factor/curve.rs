@@ -24,7 +24,7 @@ pub(super) struct Curve {
 }
 
 /// Where the last coefficients fall below it, the rest is noise of the integrals.
-const NOISE: f64 = 2e-11;
+const NOISE: f64 = 5e-11;
 /// Points to begin with, and to give up at: a model whose E is not analytic gets what they give.
 const POINTS: [usize; 2] = [64, 512];
 /// Curves that are kept: 2 MiB and less.
