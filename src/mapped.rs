@@ -2,6 +2,7 @@
 //! lives. For models that no kernel with a map of its own is worth: a direction takes 100 ns here.
 
 use crate::pair::{Azimuth, Pair};
+use crate::quadrature::Node;
 use crate::setting::Setting;
 use rayon::prelude::*;
 
@@ -12,6 +13,8 @@ pub struct Map {
     pub samples: fn(&Fixed, &Setting, tolerance: f64) -> Vec<Sample>,
     /// At most so many of them.
     pub most: fn(&Setting, tolerance: f64) -> usize,
+    /// μ and weights of the mean ρ_hh = ∫ ρ 2μ dμ, if they are its own.
+    pub mean: Option<fn(tolerance: f64) -> Vec<Node>>,
     /// What measure 0 tends to, where the lobe becomes a delta.
     pub limit: Option<fn(mu: f64, &Setting) -> [f64; 2]>,
 }

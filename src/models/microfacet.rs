@@ -7,12 +7,13 @@
 use super::fresnel::{
     Fresnel, conductor::Conductor, dielectric::Dielectric, f82::F82, none::Constant, schlick::Schlick,
 };
-use super::half_vector;
 use super::masking::{
     Masking, kelemen::Kelemen, none::Unmasked, schlick_ggx::SchlickGgx, schlick_ggx_direct::SchlickGgxDirect,
     smith_correlated::SmithCorrelated, smith_separable::SmithSeparable,
 };
-use super::ndf::{Map, Ndf, beckmann::Beckmann, ggx::Ggx};
+use super::ndf::{
+    Map, Ndf, beckmann::Beckmann, blinn_phong::BlinnPhong, charlie::Charlie, ggx::Ggx, gtr::Gtr,
+};
 use super::{
     Integral, Metal, Model, Parameter, Part, Sampling, SlopeCounts, SlopeMap, Slopes, Term, mirror, part,
 };
@@ -67,7 +68,7 @@ macro_rules! parts {
 }
 
 parts! {
-    ndfs: Ggx, Beckmann;
+    ndfs: Ggx, Beckmann, Gtr, BlinnPhong, Charlie;
     maskings: SmithCorrelated, SmithSeparable, SchlickGgx, SchlickGgxDirect, Kelemen, Unmasked;
     fresnels: Schlick, Constant, Dielectric, Conductor, F82;
 }
@@ -84,6 +85,26 @@ pub(super) static BECKMANN: Model = Model {
     summary: "Beckmann microfacets, height-correlated Smith, Schlick: f = F0·A + F90·B",
     source: "Walter et al. 2007, eq. 20 and 25; Heitz 2014, eq. 99; Schlick 1994, eq. 15",
     ..Made::<Beckmann, SmithCorrelated, Schlick>::MODEL
+};
+
+/// GTR with the defaults.
+pub(super) static GTR: Model = Model {
+    summary: "generalised Trowbridge–Reitz microfacets, height-correlated Smith, Schlick: gamma = 1 is Disney's clearcoat",
+    parameters: &GTR_PARAMETERS,
+    ..Made::<Gtr, SmithCorrelated, Schlick>::MODEL
+};
+const GTR_PARAMETERS: [Parameter; 1] = [Gtr::PARAMETERS[0]];
+
+/// Blinn–Phong with the defaults.
+pub(super) static BLINN_PHONG: Model = Model {
+    summary: "Blinn–Phong microfacets, height-correlated Smith, Schlick: f = F0·A + F90·B",
+    ..Made::<BlinnPhong, SmithCorrelated, Schlick>::MODEL
+};
+
+/// Charlie with the defaults.
+pub(super) static CHARLIE: Model = Model {
+    summary: "Charlie's fibres for cloth, masked by their fit, Schlick: f = F0·A + F90·B",
+    ..Made::<Charlie, SmithCorrelated, Schlick>::MODEL
 };
 
 impl Model {
@@ -170,9 +191,9 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
             N::derive(parameters);
             F::derive(parameters);
         },
-        rho_bound: if M::UNBOUNDED.is_some() { f64::INFINITY } else { 1.0 },
+        rho_bound: if Self::UNBOUNDED.is_some() { f64::INFINITY } else { N::RHO_BOUND },
         parts: &Self::PARTS,
-        integral: match M::UNBOUNDED {
+        integral: match Self::UNBOUNDED {
             Some(why) => Integral::Unbounded(why),
             None => match &Self::SLOPES {
                 Some(slopes) => Integral::Slopes(slopes),
@@ -182,6 +203,11 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         value_f32: N::VALUE_F32,
         lobe: Self::lobe,
         reference: Some(&Self::REFERENCE),
+    };
+
+    const UNBOUNDED: Option<&'static str> = match M::UNBOUNDED {
+        None if !N::IS_MIRROR_AT_0 => M::UNBOUNDED_OFF_PEAK,
+        why => why,
     };
 
     const TERMS: Microfacet = Microfacet {
@@ -204,12 +230,13 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
 
     const MAP: mapped::Map = mapped::Map {
         samples: |fixed, s, tolerance| {
-            half_vector::samples::<N, M>(fixed.mu, s, Self::counts(fixed.mu, s, tolerance), tolerance)
+            N::samples::<M>(fixed.mu, s, Self::counts(fixed.mu, s, tolerance), tolerance)
         },
         most: |s, tolerance| {
-            let cost = |mu| half_vector::most::<M>(Self::counts(mu, s, tolerance));
+            let cost = |mu| N::most::<M>(Self::counts(mu, s, tolerance));
             [1.0, 0.3, 0.1, 0.03, 1e-2, 1e-3, 1e-4, MU_MIN].map(cost).into_iter().max().unwrap_or(1)
         },
+        mean: N::MEAN,
         limit: if N::IS_MIRROR_AT_0 { Some(Self::mirror_limit) } else { None },
     };
 
@@ -275,7 +302,7 @@ mod tests {
     /// Names are keys of pipelines, words of recipes and parts of file names.
     #[test]
     fn every_combination_has_a_name_of_its_own() {
-        let defaults = [&GGX, &BECKMANN];
+        let defaults = [&GGX, &BECKMANN, &GTR, &BLINN_PHONG, &CHARLIE];
         assert_eq!(MICROFACETS.len(), defaults.len() * MASKINGS.len() * FRESNELS.len());
         let names: Vec<_> = models::all().map(|model| model.name).collect();
         for (k, name) in names.iter().enumerate() {

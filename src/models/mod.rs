@@ -200,6 +200,9 @@ models! {
     diffuse::frostbite::MODEL,
     microfacet::GGX,
     microfacet::BECKMANN,
+    microfacet::GTR,
+    microfacet::BLINN_PHONG,
+    microfacet::CHARLIE,
     mirror::MODEL,
 }
 

@@ -51,6 +51,13 @@ impl Shape {
         odds: false,
     };
 
+    /// α = roughness², how much fibres lean: α → 0 is no mirror.
+    pub(crate) const SHEEN: Self = Self {
+        summary: "how far fibres are from upright, alpha = roughness², at least 0.005",
+        least: 0.0,
+        ..Self::ALPHA
+    };
+
     /// The roughness as it is.
     pub(crate) const ROUGHNESS: Self = Self {
         name: "roughness",
