@@ -81,11 +81,14 @@ impl Ndf for Gtr {
         Map { p: tan, m: 1.0, weight }
     }
 
+    /// In proportion to the map's length, a logarithm of 1/α. Azimuths are measured, to spare. Nodes are too few for
+    /// γ near 1 and tolerances below 1e-4, where G2 bends within α of the horizon and the tail still has weight there: then
+    /// the second rule of a table says that it misses its tolerance.
     fn counts(mu: f64, s: &Setting, tolerance: f64) -> [SlopeCounts; 2] {
         let d = decade(tolerance);
         let longest =
             if crate::models::is_fine(tolerance) { Self::fine_end } else { Self::coarse_end }(2.0 / mu, s);
-        let nodes = (4.0 + d as f64 * 3.0 + longest * (0.5 + 0.3 * d as f64)).ceil() as usize;
+        let nodes = (6.0 + 4.0 * d as f64 + longest * (0.6 + 0.5 * d as f64)).ceil() as usize;
         let azimuths = 5 + 5 * d;
         [SlopeCounts { azimuths, nodes }; 2]
     }
