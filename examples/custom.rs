@@ -34,7 +34,7 @@ static MODEL: Model = Model {
         "fn lobe(p: Pair, a: Azimuth, alpha: real, row: real) -> real2 { return real2(row, 0.0); }
          fn lobe_row(p: Pair, alpha: real) -> real { return 0.25 * INV_PI / (p.mu_i + p.mu_e); }",
     )],
-    integral: Integral::Mapped(Map { samples, most: |_, _| 2 * NODES, limit: |_, _| None }),
+    integral: Integral::Mapped(Map { samples, most: |_, _| 2 * NODES, mean: None, limit: |_, _| None }),
     value_f32: VALUE_F32,
     lobe: |p, _, _| [0.25 / (PI * (p.mu_i + p.mu_e)), 0.0],
     reference: Some(&LommelSeeliger),

@@ -4,6 +4,7 @@
 use crate::factor::{Scale, product::Nodes};
 use crate::models::FINEST;
 use crate::pair::{Azimuth, Frame, Pair};
+use crate::quadrature::Node;
 use crate::setting::Setting;
 use rayon::prelude::*;
 
@@ -14,6 +15,8 @@ pub struct Map {
     pub samples: fn(&Fixed, &Setting, tolerance: f64) -> Vec<Sample>,
     /// At most so many of them.
     pub most: fn(&Setting, tolerance: f64) -> usize,
+    /// μ and weights of the mean ρ_hh = ∫ ρ 2μ dμ, if they are its own.
+    pub mean: Option<fn(tolerance: f64) -> Vec<Node>>,
     /// ρ in closed form where the lobe is a delta.
     pub limit: fn(mu: f64, &Setting) -> Option<[f64; 2]>,
 }

@@ -3,7 +3,7 @@
 
 use crate::axis::Variable;
 use crate::factor::{Scale, product::Nodes};
-use crate::mapped::{Fixed, MappedWork, Source};
+use crate::mapped::{Fixed, Map, MappedWork, Source};
 use crate::models::{Integral, Sampling, Slopes, decade};
 use crate::pair::{Azimuth, MU_MIN, Pair, off_horizon};
 use crate::plan::{Lobe, Rule, TablePlan};
@@ -104,6 +104,10 @@ impl Work {
                         let thetas: Vec<_> = nodes.iter().map(|node| FRAC_PI_2 * node.x).collect();
                         let weight = |n: &Node| FRAC_PI_2 * n.weight * (PI * n.x).sin();
                         [thetas, nodes.iter().map(weight).collect()]
+                    }
+                    Integral::Mapped(Map { mean: Some(mean), .. }) => {
+                        let nodes = mean(table.rule_tolerance());
+                        [nodes.iter().map(|n| n.x.acos()).collect(), nodes.iter().map(|n| n.weight).collect()]
                     }
                     // ρ_hh = ∫ ρ 2μ dμ with μ = u²: ρ turns at μ ≈ α, where u has nodes to spare.
                     _ => [

@@ -8,12 +8,14 @@ use super::fresnel::{
     Fresnel, conductor::Conductor, dielectric::Dielectric, f82::F82, none::Constant, schlick::Schlick,
     thin_film::ThinFilm,
 };
-use super::half_vector::{self, stretched};
+use super::half_vector::stretched;
 use super::masking::{
     Masking, Toward, kelemen::Kelemen, none::Unmasked, schlick_ggx::SchlickGgx,
     schlick_ggx_direct::SchlickGgxDirect, smith_correlated::SmithCorrelated, smith_separable::SmithSeparable,
 };
-use super::ndf::{Map, Ndf, beckmann::Beckmann, ggx::Ggx, stretched::Stretched};
+use super::ndf::{
+    Map, Ndf, beckmann::Beckmann, blinn_phong::BlinnPhong, charlie::Charlie, ggx::Ggx, stretched::Stretched,
+};
 use super::{
     Integral, Metal, Model, Parameter, Part, Sampling, SlopeCounts, SlopeMap, Slopes, Term, mirror, part,
 };
@@ -72,7 +74,7 @@ macro_rules! parts {
 }
 
 parts! {
-    ndfs: Ggx, Beckmann, Stretched<Ggx>, Stretched<Beckmann>;
+    ndfs: Ggx, Beckmann, Stretched<Ggx>, Stretched<Beckmann>, BlinnPhong, Charlie;
     maskings: SmithCorrelated, SmithSeparable, SchlickGgx, SchlickGgxDirect, Kelemen, Unmasked;
     fresnels: Schlick, Constant, Dielectric, Conductor, F82, ThinFilm;
 }
@@ -105,6 +107,18 @@ pub(super) static BECKMANN_ANISOTROPIC: Model = Model {
     source: "Walter et al. 2007, eq. 20; Heitz 2014, eq. 83, 84 and 99; Schlick 1994, eq. 15",
     parameters: Stretched::<Beckmann>::PARAMETERS,
     ..Made::<Stretched<Beckmann>, SmithCorrelated, Schlick>::MODEL
+};
+
+/// Blinn–Phong with the defaults.
+pub(super) static BLINN_PHONG: Model = Model {
+    summary: "Blinn–Phong microfacets, height-correlated Smith, Schlick: f = F0·A + F90·B",
+    ..Made::<BlinnPhong, SmithCorrelated, Schlick>::MODEL
+};
+
+/// Charlie with the defaults.
+pub(super) static CHARLIE: Model = Model {
+    summary: "Charlie's fibres for cloth, masked by their fit, Schlick: f = F0·A + F90·B",
+    ..Made::<Charlie, SmithCorrelated, Schlick>::MODEL
 };
 
 impl Model {
@@ -191,9 +205,9 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
             N::derive(parameters);
             F::derive(parameters);
         },
-        rho_bound: if M::UNBOUNDED.is_some() { f64::INFINITY } else { F::BOUND },
+        rho_bound: if Self::UNBOUNDED.is_some() { f64::INFINITY } else { N::RHO_BOUND * F::BOUND },
         parts: &Self::PARTS,
-        integral: match M::UNBOUNDED {
+        integral: match Self::UNBOUNDED {
             Some(why) => Integral::Unbounded(why),
             None => match &Self::SLOPES {
                 Some(slopes) => Integral::Slopes(slopes),
@@ -203,6 +217,11 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         value_f32: N::VALUE_F32 + F::VALUE_F32,
         lobe: Self::lobe,
         reference: Some(if N::STRETCHES { &Self::STRETCHED_REFERENCE } else { &Self::REFERENCE }),
+    };
+
+    const UNBOUNDED: Option<&'static str> = match M::UNBOUNDED {
+        None if !N::IS_MIRROR_AT_0 => M::UNBOUNDED_OFF_PEAK,
+        why => why,
     };
 
     const TERMS: Microfacet = Microfacet {
@@ -238,14 +257,15 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
             let counts = Self::counts(fixed.mu, s, tolerance);
             match N::STRETCHES {
                 true => stretched::samples::<N, M>(fixed, s, counts),
-                false => half_vector::samples::<N, M>(fixed, s, counts, tolerance),
+                false => N::samples::<M>(fixed, s, counts, tolerance),
             }
         },
         most: |s, tolerance| {
             let panels = if N::STRETCHES { stretched::PANELS } else { 1 };
-            let cost = |mu| panels * half_vector::most::<M>(Self::counts(mu, s, tolerance));
+            let cost = |mu| panels * N::most::<M>(Self::counts(mu, s, tolerance));
             [1.0, 0.3, 0.1, 0.03, 1e-2, 1e-3, 1e-4, MU_MIN].map(cost).into_iter().max().unwrap_or(1)
         },
+        mean: N::MEAN,
         limit: |mu, s| (N::IS_MIRROR_AT_0 && N::axes(s) == [0.0; 2]).then(|| Self::mirror_limit(mu, s)),
     };
 
@@ -323,7 +343,7 @@ mod tests {
     /// Names are keys of pipelines, words of recipes and parts of file names.
     #[test]
     fn every_combination_has_a_name_of_its_own() {
-        let defaults = [&GGX, &BECKMANN, &GGX_ANISOTROPIC, &BECKMANN_ANISOTROPIC];
+        let defaults = [&GGX, &BECKMANN, &GGX_ANISOTROPIC, &BECKMANN_ANISOTROPIC, &BLINN_PHONG, &CHARLIE];
         assert_eq!(MICROFACETS.len(), defaults.len() * MASKINGS.len() * FRESNELS.len());
         let names: Vec<_> = models::all().map(|model| model.name).collect();
         for (k, name) in names.iter().enumerate() {

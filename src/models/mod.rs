@@ -209,6 +209,8 @@ models! {
     microfacet::BECKMANN,
     microfacet::GGX_ANISOTROPIC,
     microfacet::BECKMANN_ANISOTROPIC,
+    microfacet::BLINN_PHONG,
+    microfacet::CHARLIE,
     mirror::MODEL,
 }
 

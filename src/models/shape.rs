@@ -57,6 +57,13 @@ impl Shape {
     /// The mean α = √(αx αy) of slopes that differ along the tangent and the bitangent.
     pub const ALPHA_XY: Self = Self { anisotropic: true, ..Self::ALPHA };
 
+    /// α = roughness², how much fibres lean: α → 0 is no mirror.
+    pub const SHEEN: Self = Self {
+        summary: "how far fibres are from upright, alpha = roughness², at least 0.005",
+        least: 0.0,
+        ..Self::ALPHA
+    };
+
     /// The roughness as it is.
     pub const ROUGHNESS: Self = Self {
         name: "roughness",

@@ -40,7 +40,7 @@ impl Reference for Microfacet {
 
     /// As the mean weighs ρ with 2μ, ρ may be the coarser the smaller μ is.
     fn rho_hh(&self, setting: &Setting) -> [f64; 2] {
-        if setting.alpha == 0.0 && self.mirror(0.5, setting) == 1.0 {
+        if self.is_mirror(setting) && self.mirror(0.5, setting) == 1.0 {
             return self.fresnel.mean(setting);
         }
         definition::rho_hh(|mu| self.rho_dh_within(TOLERANCE / mu, mu, setting, &|_| 1.0), setting.alpha)
@@ -71,7 +71,7 @@ impl Microfacet {
         factor: &dyn Fn(f64) -> f64,
     ) -> [f64; 2] {
         let mu = mu.clamp(MIN_MU, 1.0);
-        if setting.alpha == 0.0 {
+        if self.is_mirror(setting) {
             let g2 = self.mirror(mu, setting) * factor(mu);
             return self.fresnel.weights(mu, 1.0 - mu, setting).map(|weight| g2 * weight);
         }
@@ -85,13 +85,17 @@ impl Microfacet {
         integrate(slice, &even_breaks(-reach, reach, PANEL), tolerance).value_or_nan()
     }
 
+    fn is_mirror(&self, setting: &Setting) -> bool {
+        setting.alpha == 0.0 && self.ndf.is_mirror_at_0()
+    }
+
     /// G2 of the ideal mirror: no microfacet leans, and Λ is 0.
     fn mirror(&self, mu: f64, setting: &Setting) -> f64 {
         self.masking.g2(&Facet { mu: [mu; 2], lambda: [0.0; 2], cos_d: mu, alpha: setting.alpha })
     }
 
     fn factors_of(&self, pair: &Pair, setting: &Setting) -> Option<Factors> {
-        if setting.alpha == 0.0 {
+        if self.is_mirror(setting) {
             return None;
         }
         let facet = Facet {
@@ -123,13 +127,14 @@ impl Microfacet {
         setting: &Setting,
         factor: &dyn Fn(f64) -> f64,
     ) -> [f64; 2] {
-        let alpha = setting.alpha;
+        // The scale of v, of a lobe that is no peak at α = 0 any.
+        let scale = if self.ndf.is_mirror_at_0() { setting.alpha } else { 1.0 };
         let wo = DVec3::new(sin_of(mu), 0.0, mu);
         let lambda_o = self.ndf.lambda((wo.x / wo.z).powi(2), setting);
 
         let integrand = |v: f64| {
             let sinh = v.sinh();
-            let tan_m = alpha * sinh;
+            let tan_m = scale * sinh;
             let cos_m = 1.0 / (1.0 + tan_m * tan_m).sqrt();
             let sin_m = tan_m * cos_m;
             let wm = DVec3::new(sin_m * cos_phi, sin_m * sin_phi, cos_m);
@@ -138,16 +143,16 @@ impl Microfacet {
             let cos_d = wo.dot(wm);
             let mu_i = f64::clamp(2.0 * cos_d * wm.z - wo.z, 0.0, 1.0);
             let lambda_i = self.ndf.lambda((sin_of(mu_i) / mu_i).powi(2), setting);
-            let facet = Facet { mu: [mu_i, mu], lambda: [lambda_i, lambda_o], cos_d, alpha };
+            let facet = Facet { mu: [mu_i, mu], lambda: [lambda_i, lambda_o], cos_d, alpha: setting.alpha };
             let g2 = self.masking.g2(&facet);
             let d = self.ndf.d(cos_m * cos_m, tan_m * tan_m, setting);
 
-            // dωm = sin θm dθm dφ, dθm = cos²θm α cosh v dv.
-            let solid_angle = sin_m * cos_m * cos_m * alpha * (1.0 + sinh * sinh).sqrt();
+            // dωm = sin θm dθm dφ, dθm = cos²θm · scale · cosh v dv.
+            let solid_angle = sin_m * cos_m * cos_m * scale * (1.0 + sinh * sinh).sqrt();
             let value = d * g2 * cos_d / mu * solid_angle * weight * factor(mu_i);
             self.fresnel.weights(cos_d, 1.0 - cos_d, setting).map(|fresnel| value * fresnel)
         };
-        let horizon = (tan_horizon(mu, cos_phi) / alpha).asinh();
+        let horizon = (tan_horizon(mu, cos_phi) / scale).asinh();
         integrate(integrand, &even_breaks(0.0, horizon, PANEL), tolerance).value_or_nan()
     }
 }

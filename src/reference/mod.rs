@@ -47,7 +47,7 @@ pub use microfacet::GGX;
 pub(crate) use microfacet::Microfacet;
 pub use mirror::MIRROR;
 pub(crate) use mirror::Mirror;
-pub(crate) use ndf::{Ndf, beckmann::Beckmann, ggx::Ggx};
+pub(crate) use ndf::{Ndf, beckmann::Beckmann, blinn_phong::BlinnPhong, charlie::Charlie, ggx::Ggx};
 
 /// The f64 reference of a model.
 ///

@@ -27,6 +27,9 @@ pub(crate) trait Masking {
     /// Why ρ has no bound, if it has none.
     const UNBOUNDED: Option<&'static str> = None;
 
+    /// The same, where it has none with normals that do not gather about n as α → 0.
+    const UNBOUNDED_OFF_PEAK: Option<&'static str> = None;
+
     /// What it takes where cos φ > 0, the side on which the horizon turns, and where cos φ < 0, when correlated
     /// Smith takes so much.
     fn counts(correlated: [SlopeCounts; 2], _tolerance: f64) -> [SlopeCounts; 2] {

@@ -11,6 +11,8 @@ pub(crate) trait Schlick {
     const TERM: Term;
     const REFERENCE: &'static dyn reference::Masking;
 
+    const UNBOUNDED_OFF_PEAK: Option<&'static str> = None;
+
     /// In [0, 1/2].
     fn k(alpha: f64) -> f64;
 }
@@ -18,6 +20,7 @@ pub(crate) trait Schlick {
 impl<S: Schlick> Masking for S {
     const TERM: Term = S::TERM;
     const REFERENCE: &'static dyn reference::Masking = S::REFERENCE;
+    const UNBOUNDED_OFF_PEAK: Option<&'static str> = S::UNBOUNDED_OFF_PEAK;
 
     fn counts(correlated: [SlopeCounts; 2], _tolerance: f64) -> [SlopeCounts; 2] {
         correlated.map(|counts| counts.more(1.25))

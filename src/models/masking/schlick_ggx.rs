@@ -18,6 +18,9 @@ impl Schlick for SchlickGgx {
         part: part!("masking/schlick_ggx", "masking/schlick"),
     };
     const REFERENCE: &'static dyn reference::Masking = &reference::SchlickGgx;
+    const UNBOUNDED_OFF_PEAK: Option<&'static str> = Some(
+        "without a peak ρ grows as α → 0 where k vanishes, beyond any bound, and no tolerance holds there",
+    );
 
     fn k(alpha: f64) -> f64 {
         0.5 * alpha

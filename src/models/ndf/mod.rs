@@ -1,6 +1,9 @@
 //! Distributions of microfacet normals.
 
 pub(crate) mod beckmann;
+pub(crate) mod blinn_phong;
+pub(crate) mod charlie;
+mod charlie_map;
 pub(crate) mod ggx;
 pub(crate) mod ggx_coarse;
 pub(crate) mod ggx_fine;
@@ -10,13 +13,15 @@ pub(crate) mod stretched;
 
 use super::fresnel::Fresnel;
 use super::masking::Masking;
-use super::{Branches, Parameter, Part, Shape, SlopeCounts, Term};
+use super::{Branches, Parameter, Part, Shape, SlopeCounts, Term, half_vector};
+use crate::mapped::{Fixed, Sample};
 use crate::pair::Half;
+use crate::quadrature::Node;
 use crate::reference;
 use crate::setting::{Parameters, Setting};
 
 /// A distribution of normals, with the maps that integrate and sample it.
-pub(crate) trait Ndf {
+pub(crate) trait Ndf: Sized {
     const TERM: Term;
     const REFERENCE: &'static dyn reference::Ndf;
     /// The shaders of its maps, the coarse one first, for the kernel that integrates in slopes: without, the host finds
@@ -32,6 +37,8 @@ pub(crate) trait Ndf {
     const IS_MIRROR_AT_0: bool = true;
     /// The relative error of its values in f32.
     const VALUE_F32: f64 = crate::plan::VALUE_F32;
+    /// The bound of ρ_dh, with any masking that keeps it bounded: 1, unless its Λ is not Smith's of these normals.
+    const RHO_BOUND: f64 = 1.0;
     /// Where ρ(μ, α) is not analytic, if that was measured.
     const BRANCHES: Option<Branches> = None;
 
@@ -62,9 +69,29 @@ pub(crate) trait Ndf {
         y * Self::smith_root((mu_e * x / y).clamp(0.0, 1.0), s)
     }
 
-    /// r at which tan θm reaches `t_max`, and the map there.
-    fn fine_end(t_max: f64, s: &Setting) -> f64;
-    fn fine_map(r: f64, s: &Setting) -> Map;
+    /// Directions whose weighted values add up to ρ, cos θ dω of them; and at most how many. By the map of the normals,
+    /// unless the NDF knows better.
+    fn samples<M: Masking>(
+        fixed: &Fixed,
+        s: &Setting,
+        counts: [SlopeCounts; 2],
+        tolerance: f64,
+    ) -> Vec<Sample> {
+        half_vector::samples::<Self, M>(fixed, s, counts, tolerance)
+    }
+    fn most<M: Masking>(counts: [SlopeCounts; 2]) -> usize {
+        half_vector::most::<M>(counts)
+    }
+    /// μ and weights of the mean ρ_hh, where its own rule of all models does not see what is in ρ.
+    const MEAN: Option<fn(tolerance: f64) -> Vec<Node>> = None;
+
+    /// r at which tan θm reaches `t_max`, and the map there: of one that has a map.
+    fn fine_end(_t_max: f64, _: &Setting) -> f64 {
+        f64::NAN
+    }
+    fn fine_map(_r: f64, _: &Setting) -> Map {
+        Map { p: f64::NAN, m: f64::NAN, weight: f64::NAN }
+    }
     /// The same for tolerances that f32 can meet.
     fn coarse_end(t_max: f64, s: &Setting) -> f64 {
         Self::fine_end(t_max, s)
