@@ -42,6 +42,8 @@ pub struct Microfacet {
     pub(crate) refused: fn(&Parameters) -> Option<&'static str>,
     /// The relative error of its values in f32.
     pub(crate) value_f32: fn(&Setting) -> f64,
+    /// f below which f32 has lost digits to underflow, sr⁻¹.
+    pub(crate) faint: f64,
     /// How many more nodes in μ its mean over directions takes than Schlick's, at a tolerance.
     pub(crate) mean_nodes: fn(&Setting, f64) -> usize,
 }
@@ -231,6 +233,7 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         metals: F::METALS,
         refused: F::refused,
         value_f32: |s| N::value_f32(s) + F::VALUE_F32,
+        faint: N::FAINT,
         mean_nodes: F::mean_nodes,
     };
 

@@ -51,6 +51,7 @@ impl<F: Fresnel> Made<F> {
         metals: F::METALS,
         refused: F::refused,
         mean_nodes: F::mean_nodes,
+        faint: crate::promises::FAINT,
         value_f32: |_| crate::plan::VALUE_F32,
     };
     const PARTS: [Part; 2] = [F::TERM.part, TERM.part];

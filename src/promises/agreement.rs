@@ -42,7 +42,7 @@ impl Property for Agreement {
                 continue;
             }
             let error = (f64::from(value) - exact).abs();
-            let relative = error / exact.abs().max(FAINT);
+            let relative = error / exact.abs().max(subject.faint());
             self.squares += relative * relative;
             self.count += 1;
             self.ulp = self.ulp.max(error / ulp(exact));

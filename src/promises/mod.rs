@@ -144,6 +144,11 @@ pub trait Subject {
         0.0
     }
 
+    /// f below which it is compared with its reference absolutely, sr⁻¹.
+    fn faint(&self) -> f64 {
+        FAINT
+    }
+
     /// The promises that it is known to break.
     fn declared(&self) -> &[Declared] {
         &[]

@@ -1,6 +1,6 @@
 //! Our own models as subjects: a sum of lobes, with parameters that are fixed or have a range.
 
-use super::{Angles, Declared, Parameter, Subject, Symmetry, Tolerances, albedo};
+use super::{Angles, Declared, FAINT, Parameter, Subject, Symmetry, Tolerances, albedo};
 use crate::axis::{Axis, Variable};
 use crate::bake::{Evaluator, Stages, Unobserved};
 use crate::check::Check;
@@ -342,6 +342,11 @@ impl Subject for Sum<'_> {
     fn symmetry(&self) -> Symmetry {
         let anisotropic = self.last.1.iter().any(|lobe| lobe.model.is_anisotropic());
         Symmetry { isotropic: !anisotropic, bilateral: true }
+    }
+
+    fn faint(&self) -> f64 {
+        let faint = |lobe: &Lobe| lobe.model.microfacet.map_or(FAINT, |made| made.faint);
+        self.last.1.iter().map(faint).fold(FAINT, f64::max)
     }
 
     fn declared(&self) -> &[Declared] {
