@@ -105,9 +105,8 @@ impl Factor {
     /// with it.
     pub(crate) fn rho_bound(&self) -> f64 {
         match self {
-            Self::Missing { .. } => 0.0,
             Self::Restored { f0, .. } => 1.0 + f0 * (RESTORED_BOUND - 1.0),
-            Self::Coat { .. } | Self::BelowCoat { .. } | Self::BelowSheen { .. } => 1.0,
+            _ => 1.0,
         }
     }
 
@@ -218,12 +217,19 @@ impl Scale {
     }
 
     /// Where it has a kink, as a function of the one cosine while the other is fixed.
-    fn kinks(&self, mu: f64) -> Vec<f64> {
+    pub fn kinks(&self, mu: f64) -> Vec<f64> {
         let kinks = self.0.iter().filter_map(|known| match known.factor {
             Factor::BelowSheen { .. } => Some(known.curve.as_ref()?.crossings(mu)),
             _ => None,
         });
         kinks.flatten().collect()
+    }
+
+    /// At most so many.
+    pub fn most_kinks(&self) -> usize {
+        /// E rises or falls at most so often.
+        const CROSSINGS: usize = 3;
+        CROSSINGS * self.0.iter().filter(|known| matches!(known.factor, Factor::BelowSheen { .. })).count()
     }
 
     /// The error that E leaves in it, relative: what is missing is a quotient of small differences. 1 − E(μ) is about

@@ -470,12 +470,14 @@ impl TablePlan {
     }
 
     /// The least tolerance of its integrals in f32. Where α differ by a ratio, values are off by it where the half vector
-    /// is near the larger one's axis, which is little of an integral until the ratio is above a hundred: measured.
+    /// is near the larger one's axis, which is little of an integral until the ratio is above a hundred: measured. A factor above 1
+    /// multiplies what rounding costs.
     fn integral_f32(&self) -> f64 {
         let worse = |lobe: &Lobe| {
             let settings = lobe.settings(&self.alphas(lobe));
             let most = settings.iter().map(|s| lobe.model.value_f32_at(s)).fold(0.0, f64::max);
-            most / lobe.model.value_f32 / 20.0
+            let factors: f64 = lobe.factors.iter().map(Factor::rho_bound).product();
+            (most / lobe.model.value_f32 / 20.0).max(1.0) * factors
         };
         INTEGRAL_F32 * self.lobes.iter().map(worse).fold(1.0, f64::max)
     }

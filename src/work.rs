@@ -248,7 +248,12 @@ fn integrals(table: &TablePlan, lobe: &Lobe, alphas: Vec<f64>, fixed: &[[f64; 2]
     };
     let new = |alphas, kind| Work { alphas, scales: Vec::new(), kind };
     let mapped = |source: Source| {
-        let fixed = mus().into_iter().zip(fixed).map(|(mu, &[_, phi])| Fixed { mu, phi }).collect();
+        let factored = !lobe.factors.is_empty();
+        let fixed = mus()
+            .into_iter()
+            .zip(fixed)
+            .map(|(mu, &[_, phi])| Fixed { mu, phi, factored, kinks: Vec::new() })
+            .collect();
         MappedWork::new(source, fixed, lobe.settings(&alphas), table.rule_tolerance())
     };
     // The plan refuses other rules for lobes with factors.

@@ -293,8 +293,10 @@ fn recipes_and_plans_say_it() {
         let error = recipe(&format!("[materials.a]\nlobes = [{{ {text} }}]")).unwrap_err().to_string();
         assert!(error.contains(why), "{error}");
     }
-    let scene =
-        recipe("[[tables]]\nmodel = \"ggx\"\ncompensation = \"turquin\"\nquantity = \"split_sum\"").unwrap();
+    let scene = recipe(
+        "[[tables]]\nmodel = \"ggx\"\ncompensation = \"turquin\"\nroughness = 0.5\nquantity = \"split_sum\"",
+    )
+    .unwrap();
     let error = Plan::new(&scene, &Selection::default()).unwrap_err().to_string();
     assert!(error.contains("not linear in F0"), "{error}");
     let grid =

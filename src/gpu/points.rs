@@ -112,7 +112,7 @@ impl<'a> Points<'a> {
                 // A lobe with a factor has points of its own, whose weights are that.
                 let weighed = (!scale.is_one()).then(|| {
                     let times = |&point: &Factors| {
-                        let [.., mu_i, mu_e, _, _, _, _] = point.map(f64::from);
+                        let [_, _, _, _, mu_i, mu_e, ..] = point.map(f64::from);
                         let mut point = point;
                         point[9] = scale.at(mu_i, mu_e) as f32;
                         point

@@ -7,7 +7,7 @@ pub(crate) mod stretched;
 use super::masking::Masking;
 use super::ndf::{Map, Ndf};
 use super::{SlopeCounts, is_fine};
-use crate::mapped::Sample;
+use crate::mapped::{Fixed, Sample};
 use crate::pair::{Azimuth, Half, Pair};
 use crate::quadrature::{Node, gauss_legendre};
 use crate::setting::Setting;
@@ -15,21 +15,23 @@ use crate::slopes::turns;
 
 /// Directions and what they weigh: cos θ dω of them.
 pub(super) fn samples<N: Ndf, M: Masking>(
-    mu: f64,
+    fixed: &Fixed,
     s: &Setting,
     counts: [SlopeCounts; 2],
     tolerance: f64,
 ) -> Vec<Sample> {
+    let mu = fixed.mu;
     let sin = ((1.0 - mu) * (1.0 + mu)).sqrt();
     let fine = is_fine(tolerance);
     let end = |t| if fine { N::fine_end(t, s) } else { N::coarse_end(t, s) };
     let map = |r| if fine { N::fine_map(r, s) } else { N::coarse_map(r, s) };
     let mut samples = Vec::new();
     for (sign, counts) in [1.0, -1.0].into_iter().zip(counts) {
-        let nodes = gauss_legendre(counts.nodes);
-        for turn in turns(mu, sign, &gauss_legendre(counts.azimuths), tolerance) {
+        let more = if fixed.factored { 2 } else { 1 };
+        let nodes = gauss_legendre(more * counts.nodes);
+        for turn in turns(mu, sign, &gauss_legendre(more * counts.azimuths), tolerance) {
             let ray = Ray::new([mu, sin], [turn.cos, turn.sin], turn.weight);
-            along::<N, M>(&ray, 0.0, &nodes, &end, &map, s.alpha, s, &mut samples);
+            along::<N, M>(&ray, fixed, &nodes, &end, &map, s.alpha, s, &mut samples);
         }
     }
     samples
@@ -67,7 +69,7 @@ impl Ray {
 #[allow(clippy::too_many_arguments)]
 fn along<N: Ndf, M: Masking>(
     ray: &Ray,
-    phi: f64,
+    fixed: &Fixed,
     nodes: &[Node],
     end: &impl Fn(f64) -> f64,
     map: &impl Fn(f64) -> Map,
@@ -78,7 +80,15 @@ fn along<N: Ndf, M: Masking>(
     let Ray { fixed: [mu, sin], turn: [cos, sin_turn], c, t_max, weight: azimuth } = *ray;
     let mut ends = vec![0.0];
     let breaks = M::breaks(c, mu).into_iter().filter(|&t| 0.0 < t && t < t_max);
-    ends.extend(breaks.chain([t_max]).map(end));
+    // cos θe = μ (1 + 2ct − t²)/(1 + t²) is k where (μ + k) t² − 2μct + k − μ = 0.
+    let roots = |&k: &f64| {
+        let root = (mu * mu * c * c - (k - mu) * (k + mu)).max(0.0).sqrt();
+        [-root, root].map(|root| (mu * c + root) / (mu + k))
+    };
+    let kinks = fixed.kinks.iter().flat_map(roots).filter(|&t| 0.0 < t && t < t_max);
+    let mut stops: Vec<_> = breaks.chain(kinks).chain([t_max]).collect();
+    stops.sort_by(f64::total_cmp);
+    ends.extend(stops.into_iter().map(end));
     for panel in ends.windows(2) {
         let (start, width) = (panel[0], panel[1] - panel[0]);
         for node in nodes {
@@ -102,7 +112,7 @@ fn along<N: Ndf, M: Masking>(
                 continue;
             }
             let pair = Pair::of_cosines_and_sines([mu, mu_e], [sin, x.hypot(y_e)]);
-            let azimuth = Azimuth::at(phi, (-y_e).atan2(-x));
+            let azimuth = Azimuth::at(fixed.phi, (-y_e).atan2(-x));
             samples.push(Sample { pair, azimuth, weight: 4.0 * projected * mu_e * solid_angle });
         }
     }
@@ -122,7 +132,7 @@ mod tests {
         let models = [
             (
                 "ggx",
-                samples::<Ggx, SmithCorrelated> as fn(f64, &Setting, [SlopeCounts; 2], f64) -> Vec<Sample>,
+                samples::<Ggx, SmithCorrelated> as fn(&Fixed, &Setting, [SlopeCounts; 2], f64) -> Vec<Sample>,
             ),
             ("beckmann", samples::<Beckmann, SmithCorrelated>),
         ];
@@ -134,9 +144,10 @@ mod tests {
                 for mu in [1.0, 0.9, 0.5, 0.1, 1e-2, 1e-3, 1e-5, MU_MIN] {
                     for alpha in [1.0, 0.3, 0.1, 1e-2, 1e-3, 1e-5, ALPHA_MIN_VALUE] {
                         let s = alpha.into();
+                        let fixed = Fixed { mu, phi: 0.0, factored: false, kinks: Vec::new() };
                         let counts = (slopes.counts)(mu, &s, tolerance);
                         let mut sum = [0.0; 2];
-                        for Sample { pair, azimuth, weight } in samples(mu, &s, counts, tolerance) {
+                        for Sample { pair, azimuth, weight } in samples(&fixed, &s, counts, tolerance) {
                             let f = (model.lobe)(&pair, &azimuth, &s);
                             sum = [sum[0] + weight * f[0], sum[1] + weight * f[1]];
                         }

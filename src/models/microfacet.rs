@@ -238,7 +238,7 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
             let counts = Self::counts(fixed.mu, s, tolerance);
             match N::STRETCHES {
                 true => stretched::samples::<N, M>(fixed, s, counts),
-                false => half_vector::samples::<N, M>(fixed.mu, s, counts, tolerance),
+                false => half_vector::samples::<N, M>(fixed, s, counts, tolerance),
             }
         },
         most: |s, tolerance| {

@@ -69,7 +69,7 @@ pub(crate) fn samples<N: Ndf, M: Masking>(
                 let ray = Ray::new([mu, sin], [cos, sin_turn], weight);
                 let end = |t| N::fine_end(t, &Setting { alpha, ..*s });
                 let map = |r| N::fine_map(r, &Setting { alpha, ..*s });
-                along::<N, M>(&ray, fixed.phi, &nodes, &end, &map, alpha, s, &mut samples);
+                along::<N, M>(&ray, fixed, &nodes, &end, &map, alpha, s, &mut samples);
             }
         }
     }
@@ -105,7 +105,10 @@ mod tests {
                         for aspect in [1.0, 3.0, 0.1, 100.0, 1e-2] {
                             let mut parameters = model.defaults();
                             parameters[0] = aspect;
-                            cases.push((Fixed { mu, phi }, Setting { alpha, parameters }));
+                            cases.push((
+                                Fixed { mu, phi, factored: false, kinks: Vec::new() },
+                                Setting { alpha, parameters },
+                            ));
                         }
                     }
                 }
