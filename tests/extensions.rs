@@ -86,6 +86,10 @@ impl Text {
 // ---- Files --------------------------------------------------------------------------------------
 
 fn scene(text: &Text, extensions: Value) -> Scene {
+    try_scene(text, extensions).unwrap()
+}
+
+fn try_scene(text: &Text, extensions: Value) -> gonio::Result<Scene> {
     let [r, g, b] = text.base_color;
     let root = json!({
         "asset": { "version": "2.0" },
@@ -102,7 +106,7 @@ fn scene(text: &Text, extensions: Value) -> Scene {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("x.gltf");
     std::fs::write(&path, root.to_string()).unwrap();
-    read(&path).unwrap()
+    read(&path)
 }
 
 fn models(material: &Material) -> Vec<&str> {
@@ -301,5 +305,26 @@ fn promises_are_kept_or_declared() {
         let declared = ["reciprocity", "energy"].contains(&finding.property);
         let fits = finding.verdict == Verdict::Kept || declared && finding.verdict == Verdict::Declared;
         assert!(fits, "{finding:?}");
+    }
+}
+
+#[test]
+fn what_gltf_does_not_allow_is_refused_by_name() {
+    for (extension, key, value, place) in [
+        ("KHR_materials_ior", "ior", json!(0.5), "from 1 on"),
+        ("KHR_materials_ior", "ior", json!("1.5"), "from 1 on"),
+        ("KHR_materials_specular", "specularFactor", json!(2), "[0, 1]"),
+        ("KHR_materials_specular", "specularColorFactor", json!([1, 1]), "three numbers"),
+        ("KHR_materials_specular", "specularColorFactor", json!([1, -1, 1]), "from 0 on"),
+        ("KHR_materials_clearcoat", "clearcoatFactor", json!(-1), "[0, 1]"),
+        ("KHR_materials_clearcoat", "clearcoatTexture", json!({ "index": 9 }), "textures[9]"),
+        ("KHR_materials_clearcoat", "clearcoatTexture", json!({}), "no index"),
+        ("KHR_materials_anisotropy", "anisotropyStrength", json!(1.1), "[0, 1]"),
+        ("KHR_materials_iridescence", "iridescenceIor", json!(0.9), "from 1 on"),
+    ] {
+        let error = try_scene(&PLAIN, json!({ extension: { key: value } })).unwrap_err().to_string();
+        for word in ["x.gltf", "materials[0] (M)", extension, key, place] {
+            assert!(error.contains(word), "{error:?} does not say {word:?}");
+        }
     }
 }

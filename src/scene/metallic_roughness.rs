@@ -13,7 +13,7 @@ const FILM: f64 = 0.29;
 /// Diffuse light is weighed with 1 − F of the half vector, not with what the specular lobe leaves, so that a
 /// pale material at grazing sends back more than it gets. The supremum is at base colour 1, metalness 0 and α → 0
 /// before μ → 0, where GGX reflects all: ρ_dh = 0.96 K(0) + 1 without extensions. A coat adds what it reflects itself,
-/// a film what its F is above 1. A sheen takes what it adds.
+/// a film what its F is above 1.
 pub(super) fn energy(material: &Material) -> Violation {
     let gains = material.lobes.iter().map(|lobe| {
         let most = match &lobe.weights {

@@ -7,8 +7,8 @@
 //!
 //! S is the specular lobe with F = 1. As max F = s (1 − (1 − max F0) (1 − Fc)), what is left of light below it is
 //! `gltf_diffuse` times s (1 − max F0) and `lambert` times 1 − s: no model of their own. Transmission takes its share of
-//! that. A thin film is a lobe of its own, in the mix that its factor says. A sheen and a coat are lobes upon all that, which
-//! they dim by a factor; where their strength w varies, 1 − w x = (1 − w) + w (1 − x) has formulas for both parts.
+//! that. A thin film is a lobe of its own, in the mix that its factor says. A coat is a lobe upon all that, which it dims
+//! by a factor; where its strength w varies, 1 − w x = (1 − w) + w (1 − x) has formulas for both parts.
 
 use super::extensions::Extended;
 use crate::factor::{Compensation, Factor};
