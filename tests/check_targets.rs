@@ -10,7 +10,7 @@ use gonio::models::MODELS;
 use gonio::plan::Lobe;
 use gonio::points::Angles;
 use gonio::promises::{Declared, Options, Parameter, Report, Subject, Sum, Verdict, check};
-use gonio::scene::{Distribution, Material, MaterialLobe, Weights};
+use gonio::scene::{Distribution, Formula, Input, Material, MaterialLobe, Weights};
 
 const OPTIONS: Options = Options { budget: 2_000_000, search: true };
 
@@ -28,7 +28,11 @@ fn verdict(report: &Report, property: &str) -> Verdict {
 
 /// As the scene reader makes them: textured weights, over these ranges.
 fn gltf(roughness: [f64; 2], metallic: [f64; 2], base_color: [f64; 2]) -> Material {
-    let weights = || Weights::Textured([String::new(), String::new()]);
+    let input = |name, [least, most]: [f64; 2]| Input { name, value: [most; 3], least: Some(least) };
+    let (m, c) = (input("metallic", metallic), input("base_color", base_color));
+    let diffuse = [Formula::number(0.96).times(&m.rest()).times(&c.all()), Formula::default()];
+    let f0 = Formula::number(0.04).times(&m.rest()).plus(m.all().times(&c.all()));
+    let specular = [f0, Formula::number(1.0)];
     let [min, max] = roughness;
     Material {
         name: "gltf".into(),
@@ -37,7 +41,7 @@ fn gltf(roughness: [f64; 2], metallic: [f64; 2], base_color: [f64; 2]) -> Materi
                 model: "gltf_diffuse".into(),
                 roughness: None,
                 parameters: Vec::new(),
-                weights: weights(),
+                weights: Weights::Textured(diffuse),
                 compensation: Compensation::None,
                 factors: Vec::new(),
             },
@@ -45,7 +49,7 @@ fn gltf(roughness: [f64; 2], metallic: [f64; 2], base_color: [f64; 2]) -> Materi
                 model: "ggx".into(),
                 roughness: Some(Distribution::uniform(min, max)),
                 parameters: Vec::new(),
-                weights: weights(),
+                weights: Weights::Textured(specular),
                 compensation: Compensation::None,
                 factors: Vec::new(),
             },

@@ -309,7 +309,7 @@ impl Plan {
                         Weights::Constant(_) => {
                             Weight::Constant(std::array::from_fn(|channel| part.weights[channel][k]))
                         }
-                        Weights::Textured(formulas) => Weight::Textured(formulas[k].clone()),
+                        Weights::Textured(formulas) => Weight::Textured(formulas[k].to_string()),
                     };
                     let components = part
                         .model

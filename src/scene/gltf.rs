@@ -4,30 +4,31 @@
 //!
 //! f = 0.96 (1 − m) c · (1 − Fc)/π + (0.04 (1 − m) + m c) · A + B
 //!
-//! so that a material is at most two lobes, `gltf_diffuse` and `ggx`. Geometry is not read; only
-//! which materials it uses.
+//! so that a material is at most two lobes, `gltf_diffuse` and `ggx`, and what its extensions make of them
+//! (`gltf/layers.rs`). Geometry is not read; only which materials it uses.
 
 mod extensions;
 mod file;
+mod layers;
+mod source;
 mod texels;
 
-use super::{Distribution, LeftOut, Material, MaterialLobe, Scene, Weights, metallic_roughness};
+use super::{LeftOut, Scene};
 use crate::error::{Error, Result};
-use crate::factor::Compensation;
 use ::gltf::json::{self, Root};
 use file::GltfFile;
+use source::Source;
 use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
-use texels::Texels;
 
 /// Reads a `.gltf` or a `.glb`.
 pub(super) fn read(path: &Path) -> Result<Scene> {
     let file = GltfFile::open(path)?;
     let mut scene = Scene { file: path.to_owned(), ..Scene::default() };
     let sources = sources(&file.root, &mut scene).map_err(|e| e.at(path.display()))?;
-    let texels = file.texels(sources.iter().filter_map(Source::image).collect());
+    let texels = file.texels(sources.iter().flat_map(Source::images).collect());
     for source in &sources {
-        scene.warnings.extend(source.extension_warnings());
+        scene.warnings.extend(source.warnings());
         let material = source.read(&file, &texels, &mut scene);
         scene.materials.push(material);
     }
@@ -152,157 +153,27 @@ fn printable(text: &str) -> String {
     text.trim().chars().map(|c| if c.is_control() { '_' } else { c }).collect()
 }
 
-/// A material of the file, with its numbers checked and its texture looked up, not yet decoded.
-struct Source {
-    name: String,
-    base_color: [f64; 3],
-    /// A texture or vertex colours multiply the base colour.
-    base_color_varies: bool,
-    metallic: f64,
-    roughness: f64,
-    texture: Option<Texture>,
-    /// Extensions that change the BRDF and that gonio does not model, and what that means.
-    unmodelled: Vec<(String, &'static str)>,
-}
-
-/// What stands behind a metallicRoughnessTexture.
-#[derive(Clone, Copy)]
-struct Texture {
-    index: usize,
-    /// `None`: the texture names no image.
-    image: Option<usize>,
-}
-
-impl Source {
-    fn check(root: &Root, material: &json::Material, name: &str, vertex_colors: bool) -> Result<Self> {
-        let pbr = &material.pbr_metallic_roughness;
-        let [r, g, b, _] = pbr.base_color_factor.0;
-        if let Some(info) = &pbr.base_color_texture {
-            texture(root, info).map_err(|e| e.at("baseColorTexture"))?;
-        }
-        let metallic_roughness = pbr.metallic_roughness_texture.as_ref();
-        Ok(Self {
-            name: name.into(),
-            base_color: [
-                unit("baseColorFactor[0]", r)?,
-                unit("baseColorFactor[1]", g)?,
-                unit("baseColorFactor[2]", b)?,
-            ],
-            base_color_varies: pbr.base_color_texture.is_some() || vertex_colors,
-            metallic: unit("metallicFactor", pbr.metallic_factor.0)?,
-            roughness: unit("roughnessFactor", pbr.roughness_factor.0)?,
-            texture: metallic_roughness
-                .map(|info| texture(root, info).map_err(|e| e.at("metallicRoughnessTexture")))
-                .transpose()?,
-            unmodelled: extensions::unmodelled(material),
-        })
-    }
-
-    /// The image whose texels decide this material's ranges; none where the factors leave it no say.
-    fn image(&self) -> Option<usize> {
-        let matters = self.roughness > 0.0 || self.metallic > 0.0;
-        self.texture.filter(|_| matters).and_then(|texture| texture.image)
-    }
-
-    fn extension_warnings(&self) -> impl Iterator<Item = String> {
-        self.unmodelled
-            .iter()
-            .map(|(extension, what)| format!("material {}: {extension} is not modelled: {what}", self.name))
-    }
-
-    fn read(
-        &self,
-        file: &GltfFile,
-        texels: &BTreeMap<usize, Result<Texels, String>>,
-        scene: &mut Scene,
-    ) -> Material {
-        let (roughness, metallic) = match self.texture {
-            None => (Distribution::constant(self.roughness), [self.metallic; 2]),
-            Some(Texture { index, image }) => {
-                let read = match image.map(|i| (i, texels.get(&i))) {
-                    None => Err((format!("textures[{index}]"), "it names no image".to_owned())),
-                    Some((_, None)) => Ok(None), // both factors are 0
-                    Some((_, Some(Ok(texels)))) => Ok(Some(texels)),
-                    Some((i, Some(Err(why)))) => Err((file.image_label(i), why.clone())),
-                };
-                match read {
-                    Ok(Some(texels)) => (texels.roughness(self.roughness), texels.metallic(self.metallic)),
-                    Ok(None) => (Distribution::constant(0.0), [0.0; 2]),
-                    Err((label, why)) => {
-                        scene.warnings.push(format!(
-                            "material {}: metallicRoughnessTexture {label}: {why}; roughness is taken over \
-                             all of [0, {}] and metalness over [0, {}]; give a PNG or JPEG for tables that fit",
-                            self.name, self.roughness, self.metallic
-                        ));
-                        (Distribution::uniform(0.0, self.roughness), [0.0, self.metallic])
-                    }
-                }
-            }
-        };
-        let mut lobes = Vec::new();
-        match self.why_no_diffuse(metallic) {
-            Some(why) => scene.left_out.push(LeftOut {
-                what: format!("the lobe gltf_diffuse of material {}", self.name),
-                why: why.into(),
-            }),
-            None => lobes.push(MaterialLobe {
-                model: "gltf_diffuse".into(),
-                roughness: None,
-                parameters: Vec::new(),
-                weights: self.weights("gltf_diffuse", metallic, ["0.96 (1 − metallic) base_color", "0"]),
-                compensation: Compensation::None,
-                factors: Vec::new(),
-            }),
-        }
-        lobes.push(MaterialLobe {
-            model: "ggx".into(),
-            roughness: Some(roughness),
-            parameters: Vec::new(),
-            weights: self.weights("ggx", metallic, ["0.04 (1 − metallic) + metallic base_color", "1"]),
-            compensation: Compensation::None,
-            factors: Vec::new(),
-        });
-        // Texels and vertex colours are at most 1, and may be 0.
-        let [low, high] = [f64::min, f64::max].map(|f| self.base_color.into_iter().reduce(f).unwrap_or(1.0));
-        let base_color = Some([if self.base_color_varies { 0.0 } else { low }, high]);
-        Material { name: self.name.clone(), lobes, metallic: Some(metallic), base_color }
-    }
-
-    fn why_no_diffuse(&self, metallic: [f64; 2]) -> Option<&'static str> {
-        if metallic[0] == 1.0 {
-            Some("it is metal everywhere, and its weight 0.96 (1 − metallic) base_color is 0")
-        } else if self.base_color == [0.0; 3] {
-            Some("its base colour is black, and its weight 0.96 (1 − metallic) base_color is 0")
-        } else {
-            None
-        }
-    }
-
-    /// The weights (a, b), as numbers where colour and metalness are the same everywhere.
-    fn weights(&self, model: &str, metallic: [f64; 2], words: [&str; 2]) -> Weights {
-        if self.base_color_varies || metallic[0] != metallic[1] {
-            return Weights::Textured(words.map(Into::into));
-        }
-        let ab = self.base_color.map(|c| metallic_roughness::weights(model, c, metallic[0]));
-        Weights::Constant([ab.map(|[a, _]| a), ab.map(|[_, b]| b)])
-    }
-}
-
 /// A factor, which glTF wants in [0, 1].
-fn unit(field: &str, value: f32) -> Result<f64> {
+fn unit(field: &str, value: f64) -> Result<f64> {
     if (0.0..=1.0).contains(&value) {
-        // The shortest decimal that gives this f32 is what the file says: 0.3, not 0.30000001192….
-        return Ok(value.to_string().parse().unwrap_or(f64::from(value)));
+        return Ok(value);
     }
     Err(Error::input(format!(
         "{field} is {value}, which glTF does not allow; correct it to a number in [0, 1]"
     )))
 }
 
+/// What stands behind a texture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Texture {
+    index: usize,
+    /// `None`: the texture names no image.
+    image: Option<usize>,
+}
+
 /// Where a texture's texels are. An image in a format of an extension (Basis, WebP) counts only where
 /// the file has no PNG or JPEG beside it.
-fn texture(root: &Root, info: &json::texture::Info) -> Result<Texture> {
-    let index = info.index.value();
+fn texture(root: &Root, index: usize) -> Result<Texture> {
     let texture = look_up(&root.textures, index, "textures")?;
     let plain = Some(texture.source.value()).filter(|&source| source != u32::MAX as usize);
     let image = plain.or_else(|| texture.extensions.as_ref().and_then(extensions::texture_source));

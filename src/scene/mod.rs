@@ -2,6 +2,7 @@
 //! tables asked for by name. Knows nothing of GPUs, rules or resolutions.
 
 mod distribution;
+mod formula;
 #[cfg(feature = "scene")]
 mod gltf;
 mod metallic_roughness;
@@ -10,6 +11,7 @@ mod recipe;
 mod varying;
 
 pub use distribution::Distribution;
+pub use formula::{Formula, Input};
 #[cfg(feature = "scene")]
 pub use recipe::parse as parse_recipe;
 
@@ -98,7 +100,7 @@ pub enum Weights {
     /// f = a·A + b·B with RGB weights [a, b].
     Constant([[f64; 3]; 2]),
     /// The weights come from textures: the formulas of a and b, in the words of the scene's format.
-    Textured([String; 2]),
+    Textured([Formula; 2]),
 }
 
 /// A table that a recipe asks for.

@@ -1,12 +1,12 @@
 //! What varies in a material, and the material at one setting of it.
 
-use super::{Distribution, Material, Weights, metallic_roughness};
+use super::{Distribution, Formula, Material, Weights, metallic_roughness};
 use crate::error::{Error, Result};
 use crate::models::Violation;
 
 impl Material {
     /// The parameters that vary, and their ranges: `roughness` (`lobes[0].roughness` where several lobes have
-    /// their own), and where textures weigh the lobes `metallic` and `base_color`.
+    /// their own), and where textures weigh the lobes `metallic`, `base_color` and what else the formulas name.
     pub fn varying(&self) -> Vec<(String, [f64; 2])> {
         let mut varying: Vec<_> = self
             .roughness_names()
@@ -16,10 +16,15 @@ impl Material {
             .filter(|(_, roughness)| !roughness.is_constant())
             .map(|(name, roughness)| (name, [roughness.min(), roughness.max()]))
             .collect();
-        if self.lobes.iter().any(|lobe| matches!(lobe.weights, Weights::Textured(_))) {
+        if self.formulas().next().is_some() {
             let textured = [("metallic", self.metallic), ("base_color", self.base_color)];
             let ranges = textured.into_iter().filter_map(|(name, range)| Some((name.into(), range?)));
             varying.extend(ranges.filter(|(_, [low, high])| low < high));
+        }
+        for input in self.formulas().flat_map(Formula::inputs).filter(|input| input.varies()) {
+            if !varying.iter().any(|(known, _)| known == input.name) {
+                varying.push((input.name.into(), input.range()));
+            }
         }
         varying
     }
@@ -45,16 +50,13 @@ impl Material {
         if let Some((name, [low, high])) = varying.iter().find(|(name, _)| get(name).is_none()) {
             return refuse(format!("its {name} varies from {low} to {high}; give --set {name}=VALUE"));
         }
-        let [metallic, base_color] = [("metallic", self.metallic), ("base_color", self.base_color)]
-            .map(|(name, range)| get(name).or(range.map(|[low, _]| low)).unwrap_or(0.0));
         let mut material = self.clone();
         for (lobe, name) in material.lobes.iter_mut().zip(self.roughness_names()) {
             if let Some(roughness) = get(&name) {
                 lobe.roughness = Some(Distribution::constant(roughness));
             }
-            if let Weights::Textured(_) = lobe.weights {
-                let weights = metallic_roughness::weights(&lobe.model, base_color, metallic);
-                lobe.weights = Weights::Constant(weights.map(|weight| [weight; 3]));
+            if let Weights::Textured(formulas) = &lobe.weights {
+                lobe.weights = Weights::Constant([0, 1].map(|k| formulas[k].at(&get)));
             }
         }
         Ok(material)
@@ -62,7 +64,15 @@ impl Material {
 
     /// What its format is known to break, whatever its models keep.
     pub fn violation(&self) -> Option<Violation> {
-        self.metallic.map(|_| metallic_roughness::ENERGY)
+        self.metallic.map(|_| metallic_roughness::energy(self))
+    }
+
+    /// The formulas of weights that textures decide.
+    fn formulas(&self) -> impl Iterator<Item = &Formula> {
+        self.lobes.iter().flat_map(|lobe| match &lobe.weights {
+            Weights::Textured(formulas) => formulas.as_slice(),
+            Weights::Constant(_) => &[],
+        })
     }
 
     /// What the roughness of each lobe is called.

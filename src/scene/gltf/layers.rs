@@ -1,0 +1,178 @@
+//! The lobes of a metallic-roughness material with its extensions. With c the base colour, m the metalness, F0 and s the
+//! dielectric's (KHR_materials_ior, KHR_materials_specular) and Fc = (1 − ωi·ωm)⁵:
+//!
+//! ```text
+//! f = (1 − m) (c (1 − max F) / π + F S) + m (c (1 − Fc) + Fc) S,  F = s (F0 (1 − Fc) + Fc)
+//! ```
+//!
+//! S is the specular lobe with F = 1. As max F = s (1 − (1 − max F0) (1 − Fc)), what is left of light below it is
+//! `gltf_diffuse` times s (1 − max F0) and `lambert` times 1 − s: no model of their own. Transmission takes its share of
+//! that. A thin film is a lobe of its own, in the mix that its factor says. A coat is a lobe upon all that, which it dims
+//! by a factor; where its strength w varies, 1 − w x = (1 − w) + w (1 − x) has formulas for both parts.
+
+use super::extensions::Extended;
+use crate::factor::{Compensation, Factor};
+use crate::models;
+use crate::scene::{Distribution, Formula, Input, MaterialLobe, Weights};
+
+/// A material's quantities.
+pub struct Layers<'a> {
+    pub base_color: &'a Input,
+    pub metallic: &'a Input,
+    pub roughness: Distribution,
+    pub coat_roughness: Option<Distribution>,
+    pub extended: &'a Extended,
+}
+
+/// A lobe as it is put together.
+#[derive(Clone)]
+struct Part {
+    model: String,
+    roughness: Option<Distribution>,
+    parameters: Vec<(String, [f64; 3])>,
+    weights: [Formula; 2],
+    factors: Vec<Factor>,
+}
+
+/// Lobes that are nothing, and why.
+type Nothing = Vec<(String, String)>;
+
+impl Layers<'_> {
+    /// The lobes, and those that are left out.
+    pub fn lobes(&self) -> (Vec<MaterialLobe>, Nothing) {
+        let mut parts = self.base();
+        self.coat(&mut parts);
+        let mut nothing = Nothing::new();
+        let lobes = parts.into_iter().filter_map(|part| {
+            let [a, b] = &part.weights;
+            if a.is_zero() && b.is_zero() {
+                nothing.push((part.model.clone(), self.why_nothing(&part)));
+                return None;
+            }
+            let weights = match a.varies() || b.varies() {
+                true => Weights::Textured(part.weights),
+                false => Weights::Constant([a.value(), b.value()]),
+            };
+            let Part { model, roughness, parameters, factors, .. } = part;
+            let compensation = Compensation::None;
+            Some(MaterialLobe { model, roughness, parameters, weights, compensation, factors })
+        });
+        (lobes.collect(), nothing)
+    }
+
+    /// Appendix B with KHR_materials_ior, _specular, _anisotropy, _iridescence, and what transmission takes.
+    fn base(&self) -> Vec<Part> {
+        let Extended { f0, specular, transmission, diffuse_transmission, strength, film, .. } = self.extended;
+        let (c, m) = (self.base_color, self.metallic);
+        let below = |weight: Formula| {
+            let weight = weight.times(&m.rest()).times(&c.all());
+            weight.times(&transmission.rest()).times(&diffuse_transmission.rest())
+        };
+        let diffuse = |model: &str, weight: Formula| Part {
+            model: model.into(),
+            roughness: None,
+            parameters: Vec::new(),
+            weights: [below(weight), Formula::default()],
+            factors: Vec::new(),
+        };
+        let (ndf, parameters) = match *strength {
+            0.0 => ("ggx", Vec::new()),
+            strength => ("ggx-anisotropic", vec![("strength".into(), [strength; 3])]),
+        };
+        let specular_lobe = Part {
+            model: ndf.into(),
+            roughness: Some(self.roughness.clone()),
+            parameters,
+            weights: [
+                f0.all().times(&specular.all()).times(&m.rest()).plus(m.all().times(&c.all())),
+                // (1 − m) s + m
+                Formula::number(1.0).plus(Formula::number(-1.0).times(&specular.rest()).times(&m.rest())),
+            ],
+            factors: Vec::new(),
+        };
+        let mut parts = vec![diffuse("gltf_diffuse", f0.rest_of_max().times(&specular.all()))];
+        if !specular.rest().is_zero() {
+            parts.push(diffuse("lambert", specular.rest()));
+        }
+        let Some(film) = film else {
+            parts.push(specular_lobe);
+            return parts;
+        };
+        let dielectric = [0, 1, 2].map(|k| f0.value[k] * specular.value[k]);
+        for (weight, f0) in [(m.rest(), dielectric), (m.all(), c.value)] {
+            let mut part = specular_lobe.clone();
+            part.model = with_fresnel(ndf, "thin-film");
+            let film_parameters =
+                [("thickness", [film.thickness; 3]), ("film_eta", [film.eta; 3]), ("f0", f0)];
+            part.parameters.extend(film_parameters.map(|(name, value)| (name.into(), value)));
+            part.weights = [film.factor.all().times(&weight), Formula::default()];
+            if !part.weights[0].is_zero() {
+                parts.push(part);
+            }
+        }
+        if !film.factor.rest().is_zero() {
+            let weights = specular_lobe.weights.each_ref().map(|weight| weight.times(&film.factor.rest()));
+            parts.push(Part { weights, ..specular_lobe });
+        }
+        parts
+    }
+
+    /// KHR_materials_clearcoat: mix(base, F = 1 specular lobe, clearcoat · (0.04 + 0.96 (1 − μe)⁵)).
+    fn coat(&self, parts: &mut Vec<Part>) {
+        let (Some(coat), Some(roughness)) = (&self.extended.coat, &self.coat_roughness) else { return };
+        let own = |weight: f64, formula: Formula| Part {
+            model: with_fresnel("ggx", "none"),
+            roughness: Some(roughness.clone()),
+            parameters: Vec::new(),
+            weights: [formula, Formula::default()],
+            factors: vec![Factor::Coat { weight }],
+        };
+        if coat.factor.varies() {
+            below(parts, &coat.factor, &Factor::BelowCoat { weight: 1.0 });
+            parts.push(own(1.0, coat.factor.all()));
+        } else {
+            let weight = coat.factor.value[0];
+            parts.iter_mut().for_each(|part| part.factors.push(Factor::BelowCoat { weight }));
+            parts.push(own(weight, Formula::number(1.0)));
+        }
+    }
+
+    fn why_nothing(&self, part: &Part) -> String {
+        let weight = &part.weights[0];
+        let because = if !part.is_diffuse() {
+            "it reflects nothing there"
+        } else if self.metallic.rest().is_zero() {
+            "it is metal everywhere"
+        } else if self.base_color.all().is_zero() {
+            "its base colour is black"
+        } else if self.extended.transmission.rest().is_zero() {
+            "what enters it is transmitted"
+        } else {
+            "nothing enters it"
+        };
+        format!("{because}, and its weight {} is 0", weight)
+    }
+}
+
+impl Part {
+    fn is_diffuse(&self) -> bool {
+        matches!(self.model.as_str(), "gltf_diffuse" | "lambert")
+    }
+}
+
+/// What lies below a layer whose strength w varies: as it is, times 1 − w, and dimmed, times w.
+fn below(parts: &mut Vec<Part>, strength: &Input, factor: &Factor) {
+    let times = |part: &Part, by: Formula| part.weights.each_ref().map(|weight| weight.times(&by));
+    let split = parts.iter().flat_map(|part| {
+        let mut dimmed = Part { weights: times(part, strength.all()), ..part.clone() };
+        dimmed.factors.push(factor.clone());
+        [Part { weights: times(part, strength.rest()), ..part.clone() }, dimmed]
+    });
+    *parts = split.collect();
+}
+
+/// The name of a distribution's lobe with another Fresnel term.
+fn with_fresnel(ndf: &str, fresnel: &str) -> String {
+    let model = models::find(ndf).and_then(|model| model.with_terms(None, Some(fresnel)));
+    model.map_or_else(|_| ndf.to_owned(), |model| model.name.to_owned())
+}

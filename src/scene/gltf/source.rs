@@ -1,0 +1,140 @@
+//! A material of the file: its numbers, and the ranges that its textures leave of them.
+
+use super::extensions::Extended;
+use super::file::GltfFile;
+use super::layers::Layers;
+use super::texels::Texels;
+use super::{Texture, texture, unit};
+use crate::error::Result;
+use crate::scene::{Distribution, Input, LeftOut, Material, Scene};
+use ::gltf::json::{self, Root};
+use std::collections::BTreeMap;
+
+/// A material of the file, with its numbers checked and its textures looked up, not yet decoded.
+pub struct Source {
+    name: String,
+    base_color: Input,
+    metallic: f64,
+    roughness: f64,
+    texture: Option<Texture>,
+    extended: Extended,
+}
+
+/// Decoded images, by index; what cannot be read says why.
+type Images = BTreeMap<usize, Result<Texels, String>>;
+
+impl Source {
+    pub fn check(root: &Root, material: &json::Material, name: &str, vertex_colors: bool) -> Result<Self> {
+        let pbr = &material.pbr_metallic_roughness;
+        let [r, g, b, _] = pbr.base_color_factor.0.map(exact);
+        if let Some(info) = &pbr.base_color_texture {
+            texture(root, info.index.value()).map_err(|e| e.at("baseColorTexture"))?;
+        }
+        let metallic_roughness = pbr.metallic_roughness_texture.as_ref();
+        let value =
+            [unit("baseColorFactor[0]", r)?, unit("baseColorFactor[1]", g)?, unit("baseColorFactor[2]", b)?];
+        let base_color_varies = pbr.base_color_texture.is_some() || vertex_colors;
+        Ok(Self {
+            name: name.into(),
+            base_color: Input { name: "base_color", value, least: base_color_varies.then_some(0.0) },
+            metallic: unit("metallicFactor", exact(pbr.metallic_factor.0))?,
+            roughness: unit("roughnessFactor", exact(pbr.roughness_factor.0))?,
+            texture: metallic_roughness
+                .map(|info| texture(root, info.index.value()).map_err(|e| e.at("metallicRoughnessTexture")))
+                .transpose()?,
+            extended: Extended::read(root, material)?,
+        })
+    }
+
+    /// The images whose texels decide this material's ranges; none where the factors leave them no say.
+    pub fn images(&self) -> impl Iterator<Item = usize> {
+        let matters = self.roughness > 0.0 || self.metallic > 0.0;
+        let coat = self.extended.coat.as_ref().and_then(|coat| coat.texture);
+        self.texture.filter(|_| matters).into_iter().chain(coat).filter_map(|texture| texture.image)
+    }
+
+    /// What of its extensions the tables do not show.
+    pub fn warnings(&self) -> impl Iterator<Item = String> {
+        self.extended.warnings.iter().map(|warning| format!("material {}: {warning}", self.name))
+    }
+
+    pub fn read(&self, file: &GltfFile, images: &Images, scene: &mut Scene) -> Material {
+        let mut warn = |what: &str, (label, why): (String, String), ranges: String| {
+            scene.warnings.push(format!(
+                "material {}: {what} {label}: {why}; {ranges}; give a PNG or JPEG for tables that fit",
+                self.name
+            ));
+        };
+        let (roughness, [least, most]) = match self.texture {
+            None => (Distribution::constant(self.roughness), [self.metallic; 2]),
+            Some(_) if self.roughness == 0.0 && self.metallic == 0.0 => {
+                (Distribution::constant(0.0), [0.0; 2])
+            }
+            Some(texture) => match texels(texture, file, images) {
+                Ok(texels) => (texels.roughness(self.roughness), texels.metallic(self.metallic)),
+                Err(why) => {
+                    let ranges = format!(
+                        "roughness is taken over all of [0, {}] and metalness over [0, {}]",
+                        self.roughness, self.metallic
+                    );
+                    warn("metallicRoughnessTexture", why, ranges);
+                    (Distribution::uniform(0.0, self.roughness), [0.0, self.metallic])
+                }
+            },
+        };
+        let coat_roughness = self.extended.coat.as_ref().map(|coat| match coat.texture {
+            None => Distribution::constant(coat.roughness),
+            Some(_) if coat.roughness == 0.0 => Distribution::constant(0.0),
+            Some(texture) => match texels(texture, file, images) {
+                Ok(texels) => texels.roughness(coat.roughness),
+                Err(why) => {
+                    let ranges = format!("the coat's roughness is taken over all of [0, {}]", coat.roughness);
+                    warn("clearcoatRoughnessTexture", why, ranges);
+                    Distribution::uniform(0.0, coat.roughness)
+                }
+            },
+        });
+        let metallic = Input { name: "metallic", value: [most; 3], least: (least < most).then_some(least) };
+        let layers = Layers {
+            base_color: &self.base_color,
+            metallic: &metallic,
+            roughness,
+            coat_roughness,
+            extended: &self.extended,
+        };
+        let (lobes, nothing) = layers.lobes();
+        scene.left_out.extend(
+            nothing.into_iter().map(|(lobe, why)| LeftOut {
+                what: format!("the lobe {lobe} of material {}", self.name),
+                why,
+            }),
+        );
+        let emitted = self.extended.left_out.iter().map(|(what, why)| LeftOut {
+            what: format!("{what} of material {}", self.name),
+            why: (*why).into(),
+        });
+        scene.left_out.extend(emitted);
+        Material {
+            name: self.name.clone(),
+            lobes,
+            metallic: Some([least, most]),
+            base_color: Some(self.base_color.range()),
+        }
+    }
+}
+
+/// The shortest decimal that gives this f32 is what the file says: 0.3, not 0.30000001192….
+fn exact(value: f32) -> f64 {
+    value.to_string().parse().unwrap_or(f64::from(value))
+}
+
+/// What an image holds; else what it is called and why it cannot be read.
+fn texels<'a>(texture: Texture, file: &GltfFile, images: &'a Images) -> Result<&'a Texels, (String, String)> {
+    let Texture { index, image } = texture;
+    match image.map(|i| (i, images.get(&i))) {
+        Some((_, Some(Ok(texels)))) => Ok(texels),
+        Some((i, Some(Err(why)))) => Err((file.image_label(i), why.clone())),
+        Some((i, None)) => Err((file.image_label(i), "it was not read".into())),
+        None => Err((format!("textures[{index}]"), "it names no image".into())),
+    }
+}
