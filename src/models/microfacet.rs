@@ -9,8 +9,9 @@ use super::fresnel::{
 };
 use super::half_vector;
 use super::masking::{
-    Masking, kelemen::Kelemen, none::Unmasked, schlick_ggx::SchlickGgx, schlick_ggx_direct::SchlickGgxDirect,
-    smith_correlated::SmithCorrelated, smith_separable::SmithSeparable,
+    Masking, ashikhmin_neubelt::AshikhminNeubelt, kelemen::Kelemen, none::Unmasked, schlick_ggx::SchlickGgx,
+    schlick_ggx_direct::SchlickGgxDirect, smith_correlated::SmithCorrelated, smith_separable::SmithSeparable,
+    v_cavity::VCavity,
 };
 use super::ndf::{Map, Ndf, beckmann::Beckmann, ggx::Ggx};
 use super::{
@@ -68,7 +69,7 @@ macro_rules! parts {
 
 parts! {
     ndfs: Ggx, Beckmann;
-    maskings: SmithCorrelated, SmithSeparable, SchlickGgx, SchlickGgxDirect, Kelemen, Unmasked;
+    maskings: SmithCorrelated, SmithSeparable, SchlickGgx, SchlickGgxDirect, VCavity, Kelemen, AshikhminNeubelt, Unmasked;
     fresnels: Schlick, Constant, Dielectric, Conductor, F82;
 }
 
@@ -207,7 +208,7 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
             half_vector::samples::<N, M>(fixed.mu, s, Self::counts(fixed.mu, s, tolerance), tolerance)
         },
         most: |s, tolerance| {
-            let cost = |mu| half_vector::most::<M>(Self::counts(mu, s, tolerance));
+            let cost = |mu| half_vector::most(&M::KINKS, Self::counts(mu, s, tolerance));
             [1.0, 0.3, 0.1, 0.03, 1e-2, 1e-3, 1e-4, MU_MIN].map(cost).into_iter().max().unwrap_or(1)
         },
         limit: if N::IS_MIRROR_AT_0 { Some(Self::mirror_limit) } else { None },

@@ -240,6 +240,15 @@ impl SlopeCounts {
             nodes: ((self.nodes as f64 * times).ceil() as usize).next_multiple_of(4),
         }
     }
+
+    /// So many for each decade of the tolerance, or more.
+    fn at_least(self, [azimuths, nodes]: [usize; 2], tolerance: f64) -> Self {
+        let decades = decade(tolerance) + 1;
+        Self {
+            azimuths: self.azimuths.max(azimuths * decades + 2),
+            nodes: self.nodes.max(nodes * decades + 2),
+        }
+    }
 }
 
 impl Slopes {

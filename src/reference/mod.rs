@@ -32,11 +32,13 @@ pub(crate) use fresnel::{
 };
 pub(crate) use masking::{
     Masking,
+    ashikhmin_neubelt::AshikhminNeubelt,
     kelemen::Kelemen,
     none::Unmasked,
     schlick_ggx::{SchlickGgx, SchlickGgxDirect},
     smith_correlated::SmithCorrelated,
     smith_separable::SmithSeparable,
+    v_cavity::VCavity,
 };
 pub use microfacet::GGX;
 pub(crate) use microfacet::Microfacet;
