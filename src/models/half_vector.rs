@@ -46,6 +46,9 @@ impl Kinks {
     /// Of what is smooth.
     pub const NONE: Self =
         Self { breaks: |_| Vec::new(), most: 0, meet: None, turn: |_| None, is_sharp: false };
+
+    /// Of what has the smaller of both cosines in it: they are the same at tan θm = c.
+    pub const OF_EQUAL_COSINES: Self = Self { breaks: |c| vec![c], most: 1, is_sharp: true, ..Self::NONE };
 }
 
 /// Directions of an NDF's normals.

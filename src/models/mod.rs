@@ -4,6 +4,7 @@
 //! evaluation in f64, which bakes where there is no device. The *reference* of a part is not here:
 //! `reference/` has it, written from the paper and sharing nothing with this module.
 
+mod classic;
 mod diffuse;
 mod fresnel;
 mod half_vector;
@@ -200,6 +201,11 @@ models! {
     diffuse::frostbite::MODEL,
     microfacet::GGX,
     microfacet::BECKMANN,
+    classic::ward::MODEL,
+    classic::ward_dur::MODEL,
+    classic::blinn::MODEL,
+    classic::ashikhmin_shirley::MODEL,
+    classic::ashikhmin_shirley_diffuse::MODEL,
     mirror::MODEL,
 }
 

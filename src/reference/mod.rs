@@ -7,6 +7,7 @@
 //! Accuracy, as the tests hold it: values to 1e-12 relative, integrals to 1e-9 absolute. Both directions of a
 //! value, and the fixed one of an integral, have a cosine of at least [`MIN_MU`].
 
+mod classic;
 mod definition;
 mod diffuse;
 mod directions;
@@ -22,6 +23,12 @@ mod tests;
 
 use crate::setting::Setting;
 
+pub use classic::{
+    ashikhmin_shirley::{ASHIKHMIN_SHIRLEY, ASHIKHMIN_SHIRLEY_DIFFUSE},
+    blinn::BLINN,
+    ward::WARD,
+    ward_dur::WARD_DUR,
+};
 pub use diffuse::{
     burley::BURLEY, eon::EON, frostbite::FROSTBITE, fujii::FUJII, gltf::GLTF_DIFFUSE, lambert::LAMBERT,
     oren_nayar::OREN_NAYAR,
