@@ -7,6 +7,7 @@ use crate::models::ndf::beckmann::Beckmann;
 use crate::models::{Part, SlopeCounts, part};
 use crate::pair::Half;
 use crate::setting::Setting;
+use std::f64::consts::TAU;
 
 pub(super) const PART: Part = part!("classic/cosine", "elementary");
 
@@ -28,7 +29,7 @@ pub(super) fn samples(mu: f64, s: &Setting, tolerance: f64, kinks: Kinks) -> Vec
     let k = 2.0 * a2 / (2.0 - a2);
     let at = |r: f64| {
         // sin θm dθm = −d cos θm, cos θm = e^(−k r²/2)
-        let solid_angle = k * r * (-0.5 * k * r * r).exp();
+        let solid_angle = TAU * k * r * (-0.5 * k * r * r).exp();
         Normal { p: (k * r * r).exp_m1().sqrt(), m: 1.0, solid_angle }
     };
     let end = |t: f64| ((t * t).ln_1p() / k).sqrt().min(5.5);
