@@ -3,7 +3,7 @@
 fn lobe(p: Pair, a: Azimuth, alpha: real, row: real) -> real2 {
     return real2((ROOT * through(p.mu_i)) * (ROOT * through(p.mu_e)), 0.0);
 }
-const ROOT: real = 0.6225058862732436; // √(28/(23π)), once for each direction
+const ROOT: real = 0.6225011546399677; // √(28/(23π)), once for each direction
 
 fn lobe_row(p: Pair, alpha: real) -> real {
     return 0.0;
