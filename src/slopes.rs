@@ -138,11 +138,8 @@ pub(crate) struct Turn {
 
 /// Azimuths φ = π/2 ∓ d sinh u of ωm from ωe's, u ∈ [0, asinh(π/2d)]: the horizon turns within μ of
 /// φ = π/2. c = tan θe cos φ; t_max = c + √(c² + 1), without cancellation where c < 0.
-pub(crate) fn turns(mu: f64, sign: f64, rule: &[Node], tolerance: f64) -> impl Iterator<Item = Turn> {
-    // Found by search: smaller wastes nodes on a turn that contributes nothing, larger misses it.
-    let d_min = if is_fine(tolerance) { 1e-3 } else { 0.1 };
+pub(crate) fn turns(mu: f64, sign: f64, rule: &[Node], d: f64) -> impl Iterator<Item = Turn> {
     let tan = ((1.0 - mu) * (1.0 + mu)).sqrt() / mu;
-    let d = mu.max(d_min);
     let u_max = (FRAC_PI_2 / d).asinh();
     rule.iter().map(move |node| {
         let u = u_max * node.x;
@@ -155,7 +152,19 @@ pub(crate) fn turns(mu: f64, sign: f64, rule: &[Node], tolerance: f64) -> impl I
     })
 }
 
-/// The same as the kernel takes them: (μe c, t_max, 1/t_max, weight).
+/// u/u_max of the azimuth where tan θe cos φ is c > 0, if there is one.
+pub(crate) fn turn_of(mu: f64, c: f64, d: f64) -> Option<f64> {
+    let cos = c * mu / ((1.0 - mu) * (1.0 + mu)).sqrt();
+    (cos < 1.0).then(|| (cos.asin() / d).asinh() / (FRAC_PI_2 / d).asinh())
+}
+
+/// d for the kernel. Found by search: smaller wastes nodes on a turn that contributes nothing, larger misses it.
+pub(crate) fn turn_scale(mu: f64, tolerance: f64) -> f64 {
+    mu.max(if is_fine(tolerance) { 1e-3 } else { 0.1 })
+}
+
+/// [`turns`] as the kernel takes them: (μe c, t_max, 1/t_max, weight).
 pub(crate) fn side(mu: f64, sign: f64, rule: &[Node], tolerance: f64) -> impl Iterator<Item = [f64; 4]> {
-    turns(mu, sign, rule, tolerance).map(move |turn| [mu * turn.c, turn.t_max, 1.0 / turn.t_max, turn.weight])
+    turns(mu, sign, rule, turn_scale(mu, tolerance))
+        .map(move |turn| [mu * turn.c, turn.t_max, 1.0 / turn.t_max, turn.weight])
 }

@@ -10,8 +10,9 @@ use super::fresnel::{
 };
 use super::half_vector::stretched;
 use super::masking::{
-    Masking, Toward, kelemen::Kelemen, none::Unmasked, schlick_ggx::SchlickGgx,
-    schlick_ggx_direct::SchlickGgxDirect, smith_correlated::SmithCorrelated, smith_separable::SmithSeparable,
+    Masking, Toward, ashikhmin_neubelt::AshikhminNeubelt, kelemen::Kelemen, none::Unmasked,
+    schlick_ggx::SchlickGgx, schlick_ggx_direct::SchlickGgxDirect, smith_correlated::SmithCorrelated,
+    smith_separable::SmithSeparable, v_cavity::VCavity,
 };
 use super::ndf::{
     Map, Ndf, beckmann::Beckmann, blinn_phong::BlinnPhong, charlie::Charlie, ggx::Ggx, stretched::Stretched,
@@ -77,7 +78,7 @@ macro_rules! parts {
 
 parts! {
     ndfs: Ggx, Beckmann, Stretched<Ggx>, Stretched<Beckmann>, BlinnPhong, Charlie;
-    maskings: SmithCorrelated, SmithSeparable, SchlickGgx, SchlickGgxDirect, Kelemen, Unmasked;
+    maskings: SmithCorrelated, SmithSeparable, SchlickGgx, SchlickGgxDirect, VCavity, Kelemen, AshikhminNeubelt, Unmasked;
     fresnels: Schlick, Constant, Dielectric, Conductor, F82, ThinFilm;
 }
 
@@ -259,7 +260,7 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         samples: |fixed, s, tolerance| {
             let counts = Self::counts(fixed.mu, s, tolerance);
             match N::STRETCHES {
-                true => stretched::samples::<N, M>(fixed, s, counts),
+                true => stretched::samples::<N, M>(fixed, s, counts, tolerance),
                 false => N::samples::<M>(fixed, s, counts, tolerance),
             }
         },

@@ -4,6 +4,7 @@
 //! evaluation in f64, which bakes where there is no device. The *reference* of a part is not here:
 //! `reference/` has it, written from the paper and sharing nothing with this module.
 
+mod classic;
 mod diffuse;
 mod fresnel;
 mod half_vector;
@@ -211,6 +212,11 @@ models! {
     microfacet::BECKMANN_ANISOTROPIC,
     microfacet::BLINN_PHONG,
     microfacet::CHARLIE,
+    classic::ward::MODEL,
+    classic::ward_dur::MODEL,
+    classic::blinn::MODEL,
+    classic::ashikhmin_shirley::MODEL,
+    classic::ashikhmin_shirley_diffuse::MODEL,
     mirror::MODEL,
 }
 
@@ -274,6 +280,15 @@ impl SlopeCounts {
         Self {
             azimuths: self.azimuths + self.azimuths.div_ceil(4),
             nodes: ((self.nodes as f64 * times).ceil() as usize).next_multiple_of(4),
+        }
+    }
+
+    /// So many for each decade of the tolerance, or more.
+    fn at_least(self, [azimuths, nodes]: [usize; 2], tolerance: f64) -> Self {
+        let decades = decade(tolerance) + 1;
+        Self {
+            azimuths: self.azimuths.max(azimuths * decades + 2),
+            nodes: self.nodes.max(nodes * decades + 2),
         }
     }
 }

@@ -74,6 +74,7 @@ impl Reference for Anisotropic {
             mu: [pair.mu_i, pair.mu_e],
             lambda: [lambda(pair.tan2_i, angles.phi_i), lambda(pair.tan2_e, phi_e)],
             cos_d: pair.cos_d,
+            cos_m: pair.cos2_m.sqrt(),
             alpha: setting.alpha,
         };
         Some(Factors {
@@ -150,7 +151,8 @@ impl Anisotropic {
             let wi = 2.0 * cos_d * wm - wo;
             let mu_i = f64::clamp(wi.z, 0.0, 1.0);
             let lambda_i = lambda((sin_of(mu_i) / mu_i).powi(2), phi + wi.y.atan2(wi.x));
-            let facet = Facet { mu: [mu_i, mu], lambda: [lambda_i, lambda_o], cos_d, alpha: setting.alpha };
+            let facet =
+                Facet { mu: [mu_i, mu], lambda: [lambda_i, lambda_o], cos_d, cos_m, alpha: setting.alpha };
             let g2 = self.masking.g2(&facet);
             let d = self.d(cos_m * cos_m, tan_m * tan_m, phi + turn, axes, setting);
             let solid_angle = sin_m * cos_m * cos_m * alpha * (1.0 + sinh * sinh).sqrt();

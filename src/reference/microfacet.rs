@@ -91,7 +91,7 @@ impl Microfacet {
 
     /// G2 of the ideal mirror: no microfacet leans, and Λ is 0.
     fn mirror(&self, mu: f64, setting: &Setting) -> f64 {
-        self.masking.g2(&Facet { mu: [mu; 2], lambda: [0.0; 2], cos_d: mu, alpha: setting.alpha })
+        self.masking.g2(&Facet { mu: [mu; 2], lambda: [0.0; 2], cos_d: mu, cos_m: 1.0, alpha: setting.alpha })
     }
 
     fn factors_of(&self, pair: &Pair, setting: &Setting) -> Option<Factors> {
@@ -102,6 +102,7 @@ impl Microfacet {
             mu: [pair.mu_i, pair.mu_e],
             lambda: [pair.tan2_i, pair.tan2_e].map(|tan2| self.ndf.lambda(tan2, setting)),
             cos_d: pair.cos_d,
+            cos_m: pair.cos2_m.sqrt(),
             alpha: setting.alpha,
         };
         Some(Factors {
@@ -143,7 +144,8 @@ impl Microfacet {
             let cos_d = wo.dot(wm);
             let mu_i = f64::clamp(2.0 * cos_d * wm.z - wo.z, 0.0, 1.0);
             let lambda_i = self.ndf.lambda((sin_of(mu_i) / mu_i).powi(2), setting);
-            let facet = Facet { mu: [mu_i, mu], lambda: [lambda_i, lambda_o], cos_d, alpha: setting.alpha };
+            let facet =
+                Facet { mu: [mu_i, mu], lambda: [lambda_i, lambda_o], cos_d, cos_m, alpha: setting.alpha };
             let g2 = self.masking.g2(&facet);
             let d = self.ndf.d(cos_m * cos_m, tan_m * tan_m, setting);
 

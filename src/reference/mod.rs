@@ -8,6 +8,7 @@
 //! value, and the fixed one of an integral, have a cosine of at least [`MIN_MU`].
 
 mod anisotropic;
+mod classic;
 mod definition;
 mod diffuse;
 mod directions;
@@ -25,6 +26,12 @@ mod tests;
 use crate::setting::Setting;
 
 pub(crate) use anisotropic::Anisotropic;
+pub use classic::{
+    ashikhmin_shirley::{ASHIKHMIN_SHIRLEY, ASHIKHMIN_SHIRLEY_DIFFUSE},
+    blinn::BLINN,
+    ward::WARD,
+    ward_dur::WARD_DUR,
+};
 pub use diffuse::{
     burley::BURLEY, eon::EON, frostbite::FROSTBITE, fujii::FUJII, gltf::GLTF_DIFFUSE, lambert::LAMBERT,
     oren_nayar::OREN_NAYAR,
@@ -37,11 +44,13 @@ pub(crate) use fresnel::{
 };
 pub(crate) use masking::{
     Masking,
+    ashikhmin_neubelt::AshikhminNeubelt,
     kelemen::Kelemen,
     none::Unmasked,
     schlick_ggx::{SchlickGgx, SchlickGgxDirect},
     smith_correlated::SmithCorrelated,
     smith_separable::SmithSeparable,
+    v_cavity::VCavity,
 };
 pub use microfacet::GGX;
 pub(crate) use microfacet::Microfacet;

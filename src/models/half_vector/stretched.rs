@@ -2,7 +2,7 @@
 //! of α(φ), 1/α(φ)² = cos²φ/αx² + sin²φ/αy², and the rays are as dense as a turn dχ of the unstretched plane,
 //! tan φ = (αy/αx) tan χ.
 
-use super::{Ray, along};
+use super::{Normals, Ray, along, normal};
 use crate::mapped::{Fixed, Sample};
 use crate::models::SlopeCounts;
 use crate::models::masking::Masking;
@@ -20,6 +20,7 @@ pub(crate) fn samples<N: Ndf, M: Masking>(
     fixed: &Fixed,
     s: &Setting,
     counts: [SlopeCounts; 2],
+    tolerance: f64,
 ) -> Vec<Sample> {
     let [x, y] = N::axes(s);
     let mu = fixed.mu;
@@ -67,9 +68,10 @@ pub(crate) fn samples<N: Ndf, M: Masking>(
                 let (sin_i, cos_i) = fixed.phi.sin_cos();
                 let (cos, sin_turn) = (cos_phi * cos_i + sin_phi * sin_i, sin_phi * cos_i - cos_phi * sin_i);
                 let ray = Ray::new([mu, sin], [cos, sin_turn], weight);
-                let end = |t| N::fine_end(t, &Setting { alpha, ..*s });
-                let map = |r| N::fine_map(r, &Setting { alpha, ..*s });
-                along::<N, M>(&ray, fixed, &nodes, &end, &map, alpha, s, &mut samples);
+                let s = Setting { alpha, ..*s };
+                let (end, at) = (|t| N::fine_end(t, &s), |r| normal::<N>(N::fine_map(r, &s), &s));
+                let normals = Normals { end: &end, at: &at, kinks: M::KINKS };
+                along(&ray, fixed, &nodes, tolerance, &normals, &mut samples);
             }
         }
     }
@@ -92,7 +94,7 @@ mod tests {
     #[test]
     #[ignore = "prints"]
     fn print_the_errors_of_counts() {
-        type Samples = fn(&Fixed, &Setting, [SlopeCounts; 2]) -> Vec<Sample>;
+        type Samples = fn(&Fixed, &Setting, [SlopeCounts; 2], f64) -> Vec<Sample>;
         for (name, samples) in [
             ("ggx-anisotropic", samples::<Stretched<Ggx>, SmithCorrelated> as Samples),
             ("beckmann-anisotropic", samples::<Stretched<Beckmann>, SmithCorrelated>),
@@ -114,7 +116,7 @@ mod tests {
                 }
             }
             let rho = |fixed: &Fixed, s: &Setting, azimuths: usize, nodes: usize| {
-                let all = samples(fixed, s, [SlopeCounts { azimuths, nodes }; 2]);
+                let all = samples(fixed, s, [SlopeCounts { azimuths, nodes }; 2], 1e-6);
                 all.iter().fold([0.0; 2], |sum, Sample { pair, azimuth, weight }| {
                     let f = (model.lobe)(pair, azimuth, s);
                     [sum[0] + weight * f[0], sum[1] + weight * f[1]]

@@ -5,6 +5,7 @@
 //! Kept: finite but where both directions graze, not negative, reciprocal; energy.
 
 use super::{Masking, Toward};
+use crate::models::half_vector::Kinks;
 use crate::models::ndf::Ndf;
 use crate::models::{SlopeCounts, Term, part};
 use crate::pair::{Half, Pair};
@@ -21,12 +22,12 @@ impl Masking for Kelemen {
     };
     const REFERENCE: &'static dyn reference::Masking = &reference::Kelemen;
     const OF_NORMAL: bool = true;
-    /// 1/(ωi·ωm) turns at tan θm ~ μ/α.
-    const GRADE: i32 = 4;
+    /// ωi·ωm = cos θm cos θi (1 + c tan θm): its inverse turns at tan θm ~ 1/c, that is μ.
+    const KINKS: Kinks = Kinks { turn: |c| (c > 0.0).then(|| 1.0 / c), is_sharp: true, ..Kinks::NONE };
 
-    /// Grading spreads what correlated Smith takes where it need not be: measured.
-    fn counts(correlated: [SlopeCounts; 2], _tolerance: f64) -> [SlopeCounts; 2] {
-        correlated.map(|counts| counts.more(3.5))
+    /// Nodes have the turn and the lobe to resolve: measured; 8 in place of 9 leave 2.5 times 1e-9.
+    fn counts(correlated: [SlopeCounts; 2], tolerance: f64) -> [SlopeCounts; 2] {
+        correlated.map(|counts| counts.at_least([4, 9], tolerance))
     }
 
     fn visibility<N: Ndf>(_i: &Toward, _e: &Toward) -> f64 {

@@ -1,5 +1,6 @@
 //! Masking and shadowing of microfacets.
 
+pub(crate) mod ashikhmin_neubelt;
 pub(crate) mod kelemen;
 pub(crate) mod none;
 mod schlick;
@@ -7,7 +8,9 @@ pub(crate) mod schlick_ggx;
 pub(crate) mod schlick_ggx_direct;
 pub(crate) mod smith_correlated;
 pub(crate) mod smith_separable;
+pub(crate) mod v_cavity;
 
+use super::half_vector::Kinks;
 use super::ndf::Ndf;
 use super::{SlopeCounts, Term};
 use crate::pair::{Half, Pair};
@@ -39,16 +42,8 @@ pub(crate) trait Masking {
     /// Whether G2 depends on ωm, and the kernel that integrates in slopes cannot have it.
     const OF_NORMAL: bool = false;
 
-    /// tan θm, ascending, at which G2 has a kink or turns, for c = tan θe cos φ with φ the azimuth of ωm from that of
-    /// ωe: panels of an integral by directions end there.
-    fn breaks(_c: f64, _mu_e: f64) -> Vec<f64> {
-        Vec::new()
-    }
-    /// At most so many of them.
-    const MOST_BREAKS: usize = 0;
-
-    /// n, where directions are taken at r = xⁿ so that they crowd at θm = 0: G2 turns there on the scale of μe.
-    const GRADE: i32 = 1;
+    /// Where G2 is not smooth in ωm.
+    const KINKS: Kinks = Kinks::NONE;
 
     /// G2 / (4 μi μe), or what of it all azimuths share.
     fn visibility<N: Ndf>(i: &Toward, e: &Toward) -> f64;

@@ -82,7 +82,7 @@ pub(crate) trait Ndf: Sized {
         half_vector::samples::<Self, M>(fixed, s, counts, tolerance)
     }
     fn most<M: Masking>(counts: [SlopeCounts; 2]) -> usize {
-        half_vector::most::<M>(counts)
+        half_vector::most(&M::KINKS, counts)
     }
     /// μ and weights of the mean ρ_hh, where its own rule of all models does not see what is in ρ.
     const MEAN: Option<fn(tolerance: f64) -> Vec<Node>> = None;

@@ -1,10 +1,12 @@
 //! Masking and shadowing.
 
+pub(super) mod ashikhmin_neubelt;
 pub(super) mod kelemen;
 pub(super) mod none;
 pub(super) mod schlick_ggx;
 pub(super) mod smith_correlated;
 pub(super) mod smith_separable;
+pub(super) mod v_cavity;
 
 /// What G2 may depend on: the directions about a microfacet.
 pub(crate) struct Facet {
@@ -14,6 +16,8 @@ pub(crate) struct Facet {
     pub lambda: [f64; 2],
     /// ωi·ωm = ωe·ωm
     pub cos_d: f64,
+    /// cos θm
+    pub cos_m: f64,
     pub alpha: f64,
 }
 
