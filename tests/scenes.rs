@@ -612,9 +612,12 @@ fn sample_models_give_the_ranges_of_their_textures() {
 
     let lamp = read(&data.join("gltf/AnisotropyBarnLamp/AnisotropyBarnLamp.gltf")).unwrap();
     assert_eq!(names(&lamp), ["Lamp Metal", "Lamp Filament", "Lamp Glass"]);
-    assert_eq!(ggx(&lamp.materials[0]), &Distribution::uniform(0.0, 1.0));
-    for word in ["KTX2", "KHR_materials_anisotropy", "KHR_materials_clearcoat", "KHR_materials_transmission"]
-    {
+    let [metal, filament, glass] = &lamp.materials[..] else { unreachable!() };
+    assert_eq!(models(metal), ["gltf_diffuse", "ggx-anisotropic", "ggx-smith-correlated-none"]);
+    assert_eq!(metal.lobes[1].roughness, Some(Distribution::uniform(0.0, 1.0)));
+    assert_eq!(metal.lobes[2].roughness, Some(Distribution::constant(0.15)));
+    assert_eq!((models(filament), models(glass)), (vec!["gltf_diffuse", "ggx"], vec!["ggx"]));
+    for word in ["KTX2", "KHR_materials_anisotropy", "KHR_materials_transmission", "KHR_materials_volume"] {
         assert!(lamp.warnings.iter().any(|warning| warning.contains(word)), "{word}: {:?}", lamp.warnings);
     }
 }

@@ -33,7 +33,8 @@ impl Source {
         let metallic_roughness = pbr.metallic_roughness_texture.as_ref();
         let value =
             [unit("baseColorFactor[0]", r)?, unit("baseColorFactor[1]", g)?, unit("baseColorFactor[2]", b)?];
-        let base_color_varies = pbr.base_color_texture.is_some() || vertex_colors;
+        // Black stays black.
+        let base_color_varies = (pbr.base_color_texture.is_some() || vertex_colors) && value != [0.0; 3];
         Ok(Self {
             name: name.into(),
             base_color: Input { name: "base_color", value, least: base_color_varies.then_some(0.0) },
