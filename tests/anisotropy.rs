@@ -7,9 +7,11 @@ use gonio::axis::Variable::{Mu, PhiE, PhiI, ThetaE, ThetaI};
 use gonio::bake::Evaluator;
 use gonio::check::Check;
 use gonio::models::Model;
-use gonio::plan::{INTEGRAL_F32, TablePlan};
+use gonio::plan::{INTEGRAL_F32, Plan, Selection, TablePlan};
 use gonio::quantity::{BRDF, Quantity, RHO_DH, RHO_HH, SPLIT_SUM};
+use gonio::scene::parse_recipe;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::path::Path;
 
 /// (aspect, strength): none, Disney's at 0.9 and back, extreme, and glTF's.
 const SETTINGS: [[f64; 2]; 5] = [[1.0, 0.0], [0.19, 0.0], [5.0, 0.0], [100.0, 0.0], [1.0, 0.6]];
@@ -113,4 +115,32 @@ fn isotropic_models_have_tables_over_all_angles() {
     let values: Vec<f64> = table.values.iter().collect();
     assert_eq!(values[0..2], values[2..4]);
     assert!(table.error.measured_max.unwrap() <= INTEGRAL_F32);
+}
+
+/// `alpha = [x, y]` is the anisotropic sibling with the mean α and their aspect; what cannot be stretched says so.
+#[test]
+fn recipes_take_two_alphas() {
+    let recipe = |text: &str| parse_recipe(Path::new("test.toml"), text.as_bytes());
+    let plan = |text: &str| Plan::new(&recipe(text).unwrap(), &Selection::default()).unwrap();
+    let lobe = |alpha: &str| {
+        format!(
+            "[materials.a]\nlobes = [{{ model = \"ggx\", masking = \"smith-separable\", alpha = {alpha} }}]"
+        )
+    };
+    let made = plan(&lobe("[0.1, 0.4]"));
+    assert_eq!(made.bases[0].model, "ggx-anisotropic-smith-separable-schlick");
+    assert_eq!(made.bases[0].parameters["aspect"], 0.25);
+    assert!((made.bases[0].roughness.unwrap()[0] - 0.2f64.sqrt()).abs() < 1e-15);
+    let table = plan("[[tables]]\nquantity = \"rho_dh\"\nmodel = \"beckmann\"\nalpha = [0.4, 0.1]");
+    assert_eq!(table.tables[0].lobes[0].model.name, "beckmann-anisotropic");
+    assert_eq!(table.tables[0].lobes[0].parameters[0], 4.0);
+    for (text, why) in [
+        (lobe("[0.1, 0.4, 0.2]"), "give two"),
+        (lobe("[0.0, 0.4]"), "0"),
+        (lobe("[1e-6, 1.0]"), "outside"),
+        ("[[tables]]\nquantity = \"rho_dh\"\nmodel = \"charlie\"\nalpha = [0.4, 0.1]".into(), "one alpha"),
+    ] {
+        let error = recipe(&text).unwrap_err().to_string();
+        assert!(error.contains("test.toml") && error.contains(why), "{error}");
+    }
 }

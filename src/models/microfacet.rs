@@ -133,6 +133,14 @@ impl Model {
         masking.into_iter().chain([("fresnel", &FRESNELS[..], &made.fresnel)]).collect()
     }
 
+    /// The same with α that differs along the tangent and the bitangent, if its distribution can be stretched.
+    pub fn anisotropic(&self) -> Option<&'static Self> {
+        let made = self.microfacet?;
+        let stretched = super::find(&format!("{}-anisotropic", made.ndf.name)).ok()?;
+        let masking = made.masking.as_ref().map(|masking| masking.name);
+        stretched.with_terms(masking, Some(made.fresnel.name)).ok()
+    }
+
     /// This model with other terms.
     ///
     /// # Errors

@@ -6,7 +6,7 @@ use super::{Distribution, Material, MaterialLobe, Scene, SubjectRequest, TableRe
 use crate::axis::{Axis, MAX_COUNT, Mapping, Positions, Variable};
 use crate::error::{Error, Result};
 use crate::factor::Compensation;
-use crate::models::{self, Component, Integral, MODELS, Model, Shape};
+use crate::models::{self, ALPHA_MIN_VALUE, Component, Integral, MODELS, Model, Shape};
 use crate::plan::{MAX_GAUSS, MAX_GRID, MAX_SAMPLES, Rule};
 use crate::quantity::{Evaluation, QUANTITIES};
 use crate::storage::Storage;
@@ -100,6 +100,7 @@ fn lobe(item: Item) -> Result<MaterialLobe> {
             (None, None) => {}
         }
     }
+    parameters.extend(aspect(&fields, model)?.map(|(name, value)| (name, [value; 3])));
     let mut weights = [[0.0; 3]; 2];
     for (weight, &Component { weight: key, default, .. }) in weights.iter_mut().zip(model.components) {
         *weight = match (fields.get(key), default) {
@@ -165,7 +166,10 @@ fn roughness(fields: &Fields, shape: &Shape) -> Result<Option<Distribution>> {
         }
         (Some(item), None) => Ok(Some(Distribution::constant(item.number_in([0.0, 1.0])?))),
         (None, Some(item)) => {
-            let measure = item.number_in([0.0, shape.most])?;
+            let measure = match item.is_array() && shape.anisotropic {
+                true => alphas(item)?.iter().product::<f64>().sqrt(),
+                false => item.number_in([0.0, shape.most])?,
+            };
             Ok(Some(Distribution::constant(shape.roughness(measure))))
         }
         (None, None) => Ok(None),
@@ -271,7 +275,8 @@ fn subject(
                 let item = fields.get(parameter.name)?;
                 Some(item.number_in(parameter.range).map(|value| (parameter.name.into(), value)))
             });
-            let parameters = parameters.collect::<Result<_>>()?;
+            let mut parameters = parameters.collect::<Result<Vec<_>>>()?;
+            parameters.extend(aspect(fields, model)?);
             let roughness = model.shape.map_or(Ok(None), |shape| roughness(fields, &shape))?;
             let roughness = match (roughness, given) {
                 (Some(range), Some(item)) if !range.is_constant() => {
@@ -307,10 +312,39 @@ fn model(fields: &Fields, item: Item) -> Result<&'static Model> {
         };
         item.one_of(there.iter().map(|term| (term.name, Some(term.name))))
     });
-    match (masking?, fresnel?) {
-        (None, None) => Ok(model),
-        (masking, fresnel) => model.with_terms(masking, fresnel),
+    let model = match (masking?, fresnel?) {
+        (None, None) => model,
+        (masking, fresnel) => model.with_terms(masking, fresnel)?,
+    };
+    match fields.get("alpha") {
+        Some(item) if item.is_array() && !model.is_anisotropic() => model
+            .anisotropic()
+            .ok_or_else(|| item.refuse(&format!("{} has one alpha; give a number", model.name))),
+        _ => Ok(model),
     }
+}
+
+/// `alpha = [x, y]` along the tangent and the bitangent: their aspect, x/y, a parameter of anisotropic models.
+fn aspect(fields: &Fields, model: &Model) -> Result<Option<(String, f64)>> {
+    let Some(parameter) = model.parameters.iter().find(|p| model.is_anisotropic() && p.name == "aspect")
+    else {
+        return Ok(None);
+    };
+    let Some(item) = fields.get("alpha").filter(Item::is_array) else { return Ok(None) };
+    if let Some(aspect) = fields.get(parameter.name) {
+        return Err(aspect.refuse("alpha = [x, y] has it; keep one of them"));
+    }
+    let [x, y] = alphas(item.clone())?;
+    let [least, most] = parameter.range;
+    if !(least..=most).contains(&(x / y)) {
+        return Err(item.refuse(&format!("{x} over {y} is outside [{least}, {most}]")));
+    }
+    Ok(Some((parameter.name.into(), x / y)))
+}
+
+fn alphas(item: Item) -> Result<[f64; 2]> {
+    let [x, y] = pair(item)?;
+    Ok([x.number_in([ALPHA_MIN_VALUE, 1.0])?, y.number_in([ALPHA_MIN_VALUE, 1.0])?])
 }
 
 /// Table names are names of files.
