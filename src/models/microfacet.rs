@@ -294,7 +294,7 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
                 integrand: |r, azimuth, mu_e, s| Self::integrand(N::fine_map(r, s), azimuth, mu_e, s),
             },
             counts: Self::counts,
-            branches: if F::POLYNOMIAL { N::BRANCHES } else { None },
+            branches: if F::POLYNOMIAL && M::SPREADS { N::BRANCHES } else { None },
             mirror_limit: Self::mirror_limit,
             map: Self::MAP,
             sampling: match N::SAMPLES {

@@ -39,6 +39,8 @@ pub(crate) trait Masking {
         correlated
     }
 
+    /// Whether ρ has the branch points of the NDF alone, so that tables of it may be spread from few integrals.
+    const SPREADS: bool = true;
     /// Whether G2 depends on ωm, and the kernel that integrates in slopes cannot have it.
     const OF_NORMAL: bool = false;
 
