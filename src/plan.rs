@@ -599,8 +599,8 @@ const MAX_VALUES: usize = 1 << 28;
 /// counts its quads in 32 bits.
 const MAX_STREAMED: usize = 1 << 33;
 
-/// The most factors of a table: 32 bytes each in the 128 MiB that every device binds.
-const MAX_FACTORS: usize = 1 << 22;
+/// The most factors of a table: 48 bytes each in the 128 MiB that every device binds.
+const MAX_FACTORS: usize = 5 << 19;
 
 /// The finest grid rule: with more nodes in θ no table is left whose factors fit. What a device's driver runs of it
 /// is for the device to say.

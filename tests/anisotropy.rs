@@ -4,10 +4,11 @@ mod common;
 
 use common::*;
 use gonio::axis::Variable::{Mu, PhiE, PhiI, ThetaE, ThetaI};
-use gonio::bake::Evaluator;
+use gonio::bake::{Evaluator, Unobserved};
 use gonio::check::Check;
 use gonio::models::Model;
-use gonio::plan::{INTEGRAL_F32, Plan, Selection, TablePlan};
+use gonio::plan::{INTEGRAL_F32, Lobe, Plan, Selection, TablePlan};
+use gonio::promises::{Options, Parameter, Sum, Verdict, check};
 use gonio::quantity::{BRDF, Quantity, RHO_DH, RHO_HH, SPLIT_SUM};
 use gonio::scene::parse_recipe;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -142,5 +143,23 @@ fn recipes_take_two_alphas() {
     ] {
         let error = recipe(&text).unwrap_err().to_string();
         assert!(error.contains("test.toml") && error.contains(why), "{error}");
+    }
+}
+
+/// Every promise but isotropy, which is not made, at an aspect of 4.
+#[test]
+fn promises_are_kept() {
+    for name in ["ggx-anisotropic", "beckmann-anisotropic"] {
+        let lobe = Lobe::new(model(name), Some(0.5), vec![[1.0, 1.0]; 3]);
+        let parameters =
+            [("roughness", 0.5, 0.5), ("aspect", 4.0, 4.0)].map(|(n, a, b)| Parameter::new(n, a, b).unwrap());
+        let mut subject = Sum::model(device(), lobe, parameters.to_vec()).unwrap();
+        let options = Options { budget: 100_000, search: false };
+        let report = check(&mut subject, &options, &Unobserved).unwrap();
+        assert!(report.find("isotropy").is_none());
+        for finding in &report.findings {
+            println!("{name} {}: {:?} {}", finding.property, finding.verdict, finding.said);
+            assert_eq!(finding.verdict, Verdict::Kept, "{name}: {finding:?}");
+        }
     }
 }

@@ -7,6 +7,7 @@ use common::*;
 use gonio::atlas::{self, Page, RECIPROCITY};
 use gonio::bake::{Evaluator, Unobserved};
 use gonio::models::MODELS;
+use gonio::plan::VALUE_F32;
 
 /// A quarter of the default: enough for the tail to be within a tenth of that of 10⁸ values.
 const BUDGET: u64 = 1_000_000;
@@ -33,12 +34,16 @@ fn f32_is_as_near_to_f64_as_promised() {
             let promise = match page.subject.as_str() {
                 // An exponential: what rounds its exponent grows with it.
                 "beckmann" => 680.0 / f64::from(1 << 24),
-                "blinn-phong" | "charlie" => model(&page.subject).value_f32,
+                name if model(name).value_f32 > VALUE_F32 => model(name).value_f32,
                 _ => band.alpha.map_or(2e-6, |[low, _]| if low >= 1e-4 { 2e-6 } else { 1e-5 }),
             };
             assert_eq!(band.promise, Some(promise));
             assert!(band.max <= promise, "{}: {:.2e} at {}", page.subject, band.max, worst.eval);
             assert_eq!(band.non_finite, 0, "{}: {}", page.subject, worst.eval);
+            // An exponential's median is not that of its worst, and not that of a product either.
+            if model(&page.subject).value_f32 > 1e-5 {
+                continue;
+            }
             // Half an ULP is at best what a rounded result is off by at most; the median is below 4 of them.
             assert!(band.median <= 4.0 / (1 << 24) as f64, "{}: {}", page.subject, band.median);
         }
