@@ -50,7 +50,7 @@ fn anywhere(n: usize) -> Vec<Angles> {
 /// differently in two kernels, which is worth the budget of values; on the CPU always.
 #[test]
 fn are_those_of_a_table() {
-    for model in MODELS.into_iter().filter(|model| !model.is_delta()) {
+    for model in MODELS.into_iter().filter(|model| !model.is_delta() && !model.is_anisotropic()) {
         let roughness = model.shape.map(|_| 0.4);
         let axes = vec![axis(ThetaI, 7), axis(ThetaE, 13), axis(DeltaPhi, 9)];
         let plan = TablePlan::basis("table", &BRDF, model, roughness, axes).unwrap();

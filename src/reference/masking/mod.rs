@@ -23,6 +23,11 @@ pub(crate) struct Facet {
 
 /// G2(ωi, ωe): the share of microfacets that are neither masked nor shadowed.
 pub(crate) trait Masking: Sync {
+    /// What ρ_dh is integrated to, absolutely: kinks that no break is at cost digits.
+    fn tolerance(&self) -> f64 {
+        1e-11
+    }
+
     /// G2 above the horizon.
     fn g2(&self, facet: &Facet) -> f64;
 }
