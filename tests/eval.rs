@@ -62,7 +62,8 @@ fn are_those_of_a_table() {
                 angles.extend(plan.axes[2].values.iter().map(pair));
             }
         }
-        for (evaluator, budget) in evaluators().into_iter().zip([VALUE_F32, STORED_F32]) {
+        for (evaluator, budget) in evaluators().into_iter().zip([model.value_f32.max(VALUE_F32), STORED_F32])
+        {
             let table = bake(evaluator, &plan, Check::Sample(0));
             let values = evaluate(&mut Points::new(evaluator, &plan.lobes).unwrap(), &angles);
             assert_eq!(values.len(), table.values.len());

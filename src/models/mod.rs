@@ -208,8 +208,6 @@ models! {
     diffuse::frostbite::MODEL,
     microfacet::GGX,
     microfacet::BECKMANN,
-    microfacet::GGX_ANISOTROPIC,
-    microfacet::BECKMANN_ANISOTROPIC,
     microfacet::BLINN_PHONG,
     microfacet::CHARLIE,
     classic::ward::MODEL,
