@@ -334,7 +334,7 @@ fn aspect(fields: &Fields, model: &Model) -> Result<Option<(String, f64)>> {
     if let Some(aspect) = fields.get(parameter.name) {
         return Err(aspect.refuse("alpha = [x, y] has it; keep one of them"));
     }
-    let [x, y] = alphas(item.clone())?;
+    let [x, y] = alphas(item)?;
     let [least, most] = parameter.range;
     if !(least..=most).contains(&(x / y)) {
         return Err(item.refuse(&format!("{x} over {y} is outside [{least}, {most}]")));
