@@ -177,41 +177,36 @@ fn reference_lobe(evaluation: Evaluation, lobe: &Lobe, at: &BTreeMap<Variable, f
     let setting = &lobe.setting_at(get(Variable::Roughness));
     let theta_i = get(Variable::ThetaI).unwrap_or(0.0);
     let phi_i = get(Variable::PhiI).unwrap_or(0.0);
-    if !lobe.factors.is_empty() {
-        let Some(product) = Product::new(lobe, get(Variable::Roughness)) else { return [f64::NAN; 2] };
+    let value = || {
+        let delta_phi = match get(Variable::PhiE) {
+            Some(phi_e) => delta_phi(phi_i, phi_e),
+            None => get(Variable::DeltaPhi).unwrap_or(0.0),
+        };
+        let theta_e = get(Variable::ThetaE).unwrap_or(0.0);
+        let f = reference.brdf(&Angles { theta_i, theta_e, delta_phi, phi_i }, setting);
+        (f.unwrap_or([f64::NAN; 2]), theta_e)
+    };
+    if lobe.factors.is_empty() {
         return match evaluation {
-            Evaluation::Value => {
-                let theta_e = get(Variable::ThetaE).unwrap_or(0.0);
-                let delta_phi = match get(Variable::PhiE) {
-                    Some(phi_e) => delta_phi(phi_i, phi_e),
-                    None => get(Variable::DeltaPhi).unwrap_or(0.0),
-                };
-                let f = reference.brdf(&Angles { theta_i, theta_e, delta_phi, phi_i }, setting);
-                let factor = product.at(theta_i.cos(), theta_e.cos());
-                f.unwrap_or([f64::NAN; 2]).map(|f| f * factor)
+            Evaluation::Value => value().0,
+            Evaluation::Directional => {
+                reference.rho_dh_at(get(Variable::Mu).unwrap_or(theta_i.cos()), phi_i, setting)
             }
-            // Of the split sum it is ωe that is fixed.
-            Evaluation::Directional => match get(Variable::Mu) {
-                Some(mu) => product.rho_dh(reference, mu, setting, true),
-                None => product.rho_dh(reference, theta_i.cos(), setting, false),
-            },
-            Evaluation::Hemispherical => product.rho_hh(reference, setting),
+            Evaluation::Hemispherical => reference.rho_hh(setting),
         };
     }
+    let Some(product) = Product::new(lobe, get(Variable::Roughness)) else { return [f64::NAN; 2] };
     match evaluation {
         Evaluation::Value => {
-            let theta_e = get(Variable::ThetaE).unwrap_or(0.0);
-            let delta_phi = match get(Variable::PhiE) {
-                Some(phi_e) => delta_phi(phi_i, phi_e),
-                None => get(Variable::DeltaPhi).unwrap_or(0.0),
-            };
-            let angles = Angles { theta_i, theta_e, delta_phi, phi_i };
-            reference.brdf(&angles, setting).unwrap_or([f64::NAN; 2])
+            let (f, theta_e) = value();
+            f.map(|f| f * product.at(theta_i.cos(), theta_e.cos()))
         }
-        Evaluation::Directional => {
-            reference.rho_dh_at(get(Variable::Mu).unwrap_or(theta_i.cos()), phi_i, setting)
-        }
-        Evaluation::Hemispherical => reference.rho_hh(setting),
+        // Of the split sum it is ωe that is fixed.
+        Evaluation::Directional => match get(Variable::Mu) {
+            Some(mu) => product.rho_dh(reference, mu, setting, true),
+            None => product.rho_dh(reference, theta_i.cos(), setting, false),
+        },
+        Evaluation::Hemispherical => product.rho_hh(reference, setting),
     }
 }
 

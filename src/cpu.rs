@@ -84,9 +84,9 @@ pub(crate) fn stream(
 fn add_row(out: &mut [f64], lobe: &Lobe, work: &Work, row: usize) {
     let WorkKind::Values(values) = &work.kind else { return };
     let setting = lobe.setting(work.alphas[row / values.rows()]);
-    let (pair, azimuths) = values.row(row % values.rows());
+    let (pair, frame) = values.place(row % values.rows());
     let scale = work.scales.get(row / values.rows()).map_or(1.0, |scale| scale.at(pair.mu_i, pair.mu_e));
-    for (azimuth, out) in azimuths.iter().zip(out.chunks_mut(lobe.weights.len())) {
+    for (azimuth, out) in values.frames[frame].iter().zip(out.chunks_mut(lobe.weights.len())) {
         add(out, lobe, (lobe.model.lobe)(pair, azimuth, &setting).map(|x| scale * x));
     }
 }

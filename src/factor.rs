@@ -101,13 +101,17 @@ impl Factor {
         }
     }
 
-    /// What it multiplies a bound on ρ with. What is missing from a lobe counts with that lobe, which is at most 1
-    /// with it.
+    /// What it multiplies a bound on ρ with.
     pub(crate) fn rho_bound(&self) -> f64 {
         match self {
             Self::Restored { f0, .. } => 1.0 + f0 * (RESTORED_BOUND - 1.0),
             _ => 1.0,
         }
+    }
+
+    /// Whether its lobe is what another one misses: both together are at most 1.
+    pub(crate) fn is_missing(&self) -> bool {
+        matches!(self, Self::Missing { .. })
     }
 
     /// In a word.

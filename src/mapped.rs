@@ -2,7 +2,7 @@
 //! lives. For models that no kernel with a map of its own is worth: a direction takes 100 ns here.
 
 use crate::factor::{Scale, product::Nodes};
-use crate::models::FINEST;
+use crate::models::{FINEST, SlopeCounts};
 use crate::pair::{Azimuth, Frame, Pair};
 use crate::quadrature::Node;
 use crate::setting::Setting;
@@ -34,6 +34,18 @@ pub struct Fixed {
     pub kinks: Vec<f64>,
 }
 
+impl Fixed {
+    pub(crate) fn sin(&self) -> f64 {
+        ((1.0 - self.mu) * (1.0 + self.mu)).sqrt()
+    }
+
+    /// What a lobe takes that takes so much without factors: twice of both.
+    pub(crate) fn counts(&self, SlopeCounts { azimuths, nodes }: SlopeCounts) -> SlopeCounts {
+        let more = if self.factored { 2 } else { 1 };
+        SlopeCounts { azimuths: more * azimuths, nodes: more * nodes }
+    }
+}
+
 /// A direction of the integral: f there, times a weight that has its cosine and its solid angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
@@ -42,8 +54,10 @@ pub struct Sample {
     pub(crate) weight: f64,
 }
 
-/// Numbers of a sample.
+/// Numbers of a sample, and where its cosines and its weight are among them.
 pub(crate) const POINT: usize = 16;
+pub(crate) const POINT_MUS: [usize; 2] = [4, 5];
+pub(crate) const POINT_WEIGHT: usize = 9;
 
 /// Inner integrals for each (setting, fixed direction).
 #[derive(Clone)]
@@ -96,7 +110,7 @@ impl MappedWork {
                 Some(limit) => Texel::Limit(limit),
                 None => Texel::Samples((map.samples)(fixed, setting, self.tolerance)),
             },
-            Source::Product(nodes) => Texel::Samples(nodes.samples(fixed.mu, &scale, self.tolerance)),
+            Source::Product(nodes) => Texel::Samples(nodes.samples(fixed, &scale, self.tolerance)),
             Source::Delta(limit) => Texel::Limit(limit(fixed.mu, setting)),
         };
         if scale.is_one() {

@@ -133,6 +133,12 @@ impl Pair {
         let Self { hz2, dt2, ss, sd, mu_i, mu_e, bin, weight, st, dt } = self;
         [hz2, dt2, ss, sd, mu_i, mu_e, bin, weight, st, dt]
     }
+
+    /// Without what tells azimuths from each other.
+    pub(crate) fn to_plain(self) -> [f64; 8] {
+        let [plain @ .., _, _] = self.to_array();
+        plain
+    }
 }
 
 impl Azimuth {

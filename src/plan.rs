@@ -15,6 +15,7 @@ use crate::quantity::{Evaluation, Quantity};
 use crate::sampling::CHUNK;
 use crate::setting::{Parameters, Setting};
 use crate::storage::{Storage, UNORM};
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -462,38 +463,41 @@ impl TablePlan {
 
     /// The relative error of its values in f32: that of its lobes' models.
     pub(crate) fn value_f32(&self) -> f64 {
-        let at = |lobe: &Lobe| {
-            let settings = lobe.settings(&self.alphas(lobe));
-            settings.iter().map(|s| lobe.model.value_f32_at(s)).fold(VALUE_F32, f64::max)
-        };
-        self.lobes.iter().map(at).fold(VALUE_F32, f64::max)
+        self.lobes.iter().map(|lobe| self.lobe_f32(lobe)).fold(VALUE_F32, f64::max)
+    }
+
+    /// That of one lobe, at the worst of its settings.
+    fn lobe_f32(&self, lobe: &Lobe) -> f64 {
+        let settings = lobe.settings(&self.alphas(lobe));
+        settings.iter().map(|s| lobe.model.value_f32_at(s)).fold(0.0, f64::max)
     }
 
     /// The least tolerance of its integrals in f32. Where α differ by a ratio, values are off by it where the half vector
-    /// is near the larger one's axis, which is little of an integral until the ratio is above a hundred: measured. Of what
-    /// reflects more than 1, roundings are so much more.
+    /// is near the larger one's axis, which is little of an integral until the ratio is above a hundred: measured.
     fn integral_f32(&self) -> f64 {
-        let worse = |lobe: &Lobe| {
-            let settings = lobe.settings(&self.alphas(lobe));
-            let most = settings.iter().map(|s| lobe.model.value_f32_at(s)).fold(0.0, f64::max);
-            let bound = lobe.rho_bound();
-            (most / lobe.model.value_f32 / 20.0).max(1.0)
-                * if bound.is_finite() { bound.max(1.0) } else { 1.0 }
+        let of = |lobe: &Lobe| {
+            let stretched = (self.lobe_f32(lobe) / lobe.model.value_f32 / 20.0).max(1.0);
+            let factors: f64 = lobe.factors.iter().map(Factor::rho_bound).product();
+            lobe.model.integral_f32() * stretched * factors.max(1.0)
         };
-        INTEGRAL_F32 * self.lobes.iter().map(worse).fold(1.0, f64::max)
+        self.lobes.iter().map(of).fold(INTEGRAL_F32, f64::max)
+    }
+
+    /// What a lobe's factors are in each row of the table; none: nothing.
+    pub(crate) fn scales(&self, lobe: &Lobe) -> Vec<Scale> {
+        if lobe.factors.is_empty() {
+            return Vec::new();
+        }
+        let rows: Vec<_> = match self.axis(Variable::Roughness) {
+            Some(axis) => axis.values.iter().map(|&roughness| Some(roughness)).collect(),
+            None => vec![lobe.roughness],
+        };
+        rows.into_par_iter().map(|row| Scale::new(&lobe.factors, row)).collect()
     }
 
     /// The relative error that factors add to its values.
     pub(crate) fn factor_error(&self) -> f64 {
-        let swept = self.axis(Variable::Roughness).map(|axis| axis.values.clone());
-        let rows = |lobe: &Lobe| {
-            swept.clone().map_or(vec![lobe.roughness], |values| values.into_iter().map(Some).collect())
-        };
-        let error = |lobe: &Lobe| {
-            let rows = if lobe.factors.is_empty() { Vec::new() } else { rows(lobe) };
-            rows.into_iter().map(|row| Scale::new(&lobe.factors, row).error()).fold(0.0, f64::max)
-        };
-        self.lobes.iter().map(error).fold(0.0, f64::max)
+        self.lobes.iter().flat_map(|lobe| self.scales(lobe)).map(|scale| scale.error()).fold(0.0, f64::max)
     }
 
     /// The least arithmetic that meets the tolerance: f32 has a floor, of some hundred roundings in an
@@ -599,8 +603,8 @@ const MAX_VALUES: usize = 1 << 28;
 /// counts its quads in 32 bits.
 const MAX_STREAMED: usize = 1 << 33;
 
-/// The most factors of a table: 48 bytes each in the 128 MiB that every device binds.
-const MAX_FACTORS: usize = 5 << 19;
+/// The most factors of a table: 32 bytes each in the 128 MiB that every device binds.
+const MAX_FACTORS: usize = 1 << 22;
 
 /// The finest grid rule: with more nodes in θ no table is left whose factors fit. What a device's driver runs of it
 /// is for the device to say.

@@ -22,6 +22,7 @@ use crate::gpu;
 use crate::models::Shape;
 use crate::pair::{Azimuth, Pair};
 use crate::plan::Lobe;
+use crate::reference;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -52,6 +53,12 @@ impl Angles {
     /// taken from it without rounding: near the mirror direction nothing is lost.
     pub fn delta_phi(&self) -> f64 {
         delta_phi(self.phi_i, self.phi_e)
+    }
+
+    /// The same for the reference.
+    pub(crate) fn of_reference(&self) -> reference::Angles {
+        let Self { theta_i, phi_i, theta_e, .. } = *self;
+        reference::Angles { theta_i, theta_e, delta_phi: self.delta_phi(), phi_i }
     }
 
     /// Whether these are directions.

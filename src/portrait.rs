@@ -110,18 +110,11 @@ fn is_delta(lobe: &Lobe) -> bool {
     lobe.model.is_delta_at(lobe.roughness.unwrap_or(0.0))
 }
 
-fn material_is_anisotropic(scene: &Scene, material: &str) -> Result<bool> {
-    let lobes = &scene.material(material)?.lobes;
-    Ok(lobes
-        .iter()
-        .any(|lobe| crate::models::find(&lobe.model).is_ok_and(crate::models::Model::is_anisotropic)))
-}
-
 impl Reflectance {
     fn of(Sitter { label, scene, material }: &Sitter, evaluator: &Evaluator) -> Result<Self> {
         let axis = Axis::new(Variable::ThetaI, THETAS, [0.0, FRAC_PI_2], Positions::Nodes, Mapping::Linear)?;
         // In the plane of the tangent, where azimuths tell.
-        let anisotropic = material_is_anisotropic(scene, material)?;
+        let anisotropic = scene.material(material)?.is_anisotropic();
         let about = anisotropic.then(|| Axis::listed(Variable::PhiI, vec![0.0])).transpose()?;
         let axes = [axis].into_iter().chain(about).collect();
         let plan = TablePlan::material(label, &RHO_DH, scene, material, axes)?;

@@ -132,23 +132,29 @@ pub(crate) struct Turn {
     pub c: f64,
     /// tan θm of the normal that reflects ωe onto the horizon.
     pub t_max: f64,
-    /// dφ/π: both halves of the azimuth, over 2π.
+    /// dφ/2π, of all azimuths that it stands for: where one half mirrors the other, dφ/π.
     pub weight: f64,
 }
 
+impl Turn {
+    /// t_max = c + √(c² + 1), without cancellation where c < 0.
+    pub fn new(tan: f64, [cos, sin]: [f64; 2], weight: f64) -> Self {
+        let c = tan * cos;
+        let root = c.hypot(1.0);
+        let t_max = if c > 0.0 { c + root } else { 1.0 / (root - c) };
+        Self { sin, cos, c, t_max, weight }
+    }
+}
+
 /// Azimuths φ = π/2 ∓ d sinh u of ωm from ωe's, u ∈ [0, asinh(π/2d)]: the horizon turns within μ of
-/// φ = π/2. c = tan θe cos φ; t_max = c + √(c² + 1), without cancellation where c < 0.
+/// φ = π/2.
 pub(crate) fn turns(mu: f64, sign: f64, rule: &[Node], d: f64) -> impl Iterator<Item = Turn> {
     let tan = ((1.0 - mu) * (1.0 + mu)).sqrt() / mu;
     let u_max = (FRAC_PI_2 / d).asinh();
     rule.iter().map(move |node| {
         let u = u_max * node.x;
         let (sin_turned, cos_turned) = (d * u.sinh()).sin_cos();
-        let (cos, sin) = (sign * sin_turned, cos_turned);
-        let c = tan * cos;
-        let root = c.hypot(1.0);
-        let t_max = if c > 0.0 { c + root } else { 1.0 / (root - c) };
-        Turn { sin, cos, c, t_max, weight: node.weight * u_max * d * u.cosh() / PI }
+        Turn::new(tan, [sign * sin_turned, cos_turned], node.weight * u_max * d * u.cosh() / PI)
     })
 }
 

@@ -14,7 +14,6 @@ use crate::sampling::{SampleWork, Sampler};
 use crate::setting::Setting;
 use crate::slopes::SlopeWork;
 use crate::spread::{LARGEST, Matrix, Spread};
-use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::iter;
 
@@ -37,6 +36,7 @@ pub(crate) enum WorkKind {
 }
 
 /// Values at all combinations of angles.
+#[derive(Clone)]
 pub(crate) struct ValueWork {
     /// Of each θi with each θe, which turns fastest.
     pub pairs: Vec<Pair>,
@@ -56,11 +56,11 @@ impl ValueWork {
         self.pairs.len() * self.frames.len()
     }
 
-    /// The pair and the azimuths of a row of an α.
-    pub fn row(&self, row: usize) -> (&Pair, &[Azimuth]) {
+    /// The pair of a row of an α, and which of the frames it has.
+    pub fn place(&self, row: usize) -> (&Pair, usize) {
         let (outer, theta_e) = (row / self.thetas_e, row % self.thetas_e);
         let (theta_i, frame) = (outer / self.frames.len(), outer % self.frames.len());
-        (&self.pairs[theta_i * self.thetas_e + theta_e], &self.frames[frame])
+        (&self.pairs[theta_i * self.thetas_e + theta_e], frame)
     }
 }
 
@@ -87,7 +87,7 @@ impl Work {
     pub fn new(table: &TablePlan, lobe: &Lobe) -> Self {
         let alphas = table.alphas(lobe);
         match table.quantity.evaluation {
-            Evaluation::Value => Self { alphas, scales: scales(table, lobe), kind: values(table) },
+            Evaluation::Value => Self { alphas, scales: table.scales(lobe), kind: values(table) },
             Evaluation::Directional => integrals(table, lobe, alphas, &directions(table), &[1.0]),
             Evaluation::Hemispherical => {
                 let tolerance = table.rule_tolerance();
@@ -189,18 +189,6 @@ fn directions(table: &TablePlan) -> Vec<[f64; 2]> {
     thetas.into_iter().flat_map(|theta| phis.iter().map(move |&phi| [theta, phi])).collect()
 }
 
-/// What the lobe is multiplied with in each row.
-fn scales(table: &TablePlan, lobe: &Lobe) -> Vec<Scale> {
-    if lobe.factors.is_empty() {
-        return Vec::new();
-    }
-    let rows: Vec<_> = match table.axis(Variable::Roughness) {
-        Some(axis) => axis.values.iter().map(|&roughness| Some(roughness)).collect(),
-        None => vec![lobe.roughness],
-    };
-    rows.into_par_iter().map(|row| Scale::new(&lobe.factors, row)).collect()
-}
-
 fn values(table: &TablePlan) -> WorkKind {
     let of = |variable| table.axis(variable).map_or(&[][..], |axis| &axis.values);
     let (theta_i, theta_e) = (of(Variable::ThetaI), of(Variable::ThetaE));
@@ -272,7 +260,7 @@ fn integrals(table: &TablePlan, lobe: &Lobe, alphas: Vec<f64>, fixed: &[[f64; 2]
         };
         // Of the split sum it is ωe that is fixed.
         let fixed_is_exitant = table.quantity.variables == [Variable::Mu];
-        let work = mapped(source).times(scales(table, lobe), fixed_is_exitant);
+        let work = mapped(source).times(table.scales(lobe), fixed_is_exitant);
         return new(alphas, of(Inner::Mapped(work), weights.to_vec()));
     }
     if let (Some((sampler, samples)), Integral::Slopes(slopes)) = (sampler, lobe.model.integral)

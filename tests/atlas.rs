@@ -40,12 +40,10 @@ fn f32_is_as_near_to_f64_as_promised() {
             assert_eq!(band.promise, Some(promise));
             assert!(band.max <= promise, "{}: {:.2e} at {}", page.subject, band.max, worst.eval);
             assert_eq!(band.non_finite, 0, "{}: {}", page.subject, worst.eval);
-            // An exponential's median is not that of its worst, and not that of a product either.
-            if model(&page.subject).value_f32 > 1e-5 {
-                continue;
-            }
-            // Half an ULP is at best what a rounded result is off by at most; the median is below 4 of them.
-            assert!(band.median <= 4.0 / (1 << 24) as f64, "{}: {}", page.subject, band.median);
+            // Half an ULP is at best what a rounded result is off by at most; the median is below 4 of them. Charlie's
+            // is an exponential where the others are products, and nowhere 0: measured 7.6.
+            let most = if page.subject == "charlie" { 8.0 } else { 4.0 };
+            assert!(band.median <= most / (1 << 24) as f64, "{}: {}", page.subject, band.median);
         }
         assert!(page.is_kept());
     }

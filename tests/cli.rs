@@ -541,7 +541,7 @@ fn a_table_that_fits_no_memory_is_refused() {
         "quantity = 'brdf'\nmodel = 'lambert'\naxes = { theta_i = 1048576, theta_e = 1048576, delta_phi = 1048576 }",
         "quantity = 'brdf'\nmodel = 'lambert'\naxes = { theta_i = 65536, theta_e = 65536, delta_phi = 2 }",
         "quantity = 'split_sum'\nmodel = 'lambert'\naxes = { mu = 1048576 }",
-        "quantity = 'rho_dh'\nmodel = 'lambert'\naxes = { theta_i = 4096 }\ngrid = [10240, 2]",
+        "quantity = 'rho_dh'\nmodel = 'lambert'\naxes = { theta_i = 4096 }\ngrid = [16384, 2]",
     ];
     for case in cases {
         let recipe = recipe(&format!("\n[[tables]]\nname = 'vast'\n{case}\n"));
@@ -557,9 +557,9 @@ fn a_table_that_fits_no_memory_is_refused() {
 #[test]
 fn the_largest_tables_bake() {
     let recipe = recipe(
-        "[[tables]]\nquantity = 'brdf'\nmodel = 'lambert'\naxes = { theta_i = 1600, theta_e = 1600, delta_phi = 2 }\n\
+        "[[tables]]\nquantity = 'brdf'\nmodel = 'lambert'\naxes = { theta_i = 2048, theta_e = 2048, delta_phi = 2 }\n\
          [[tables]]\nquantity = 'rho_dh'\nmodel = 'lambert'\ngrid = [16384, 2]\naxes = { theta_i = 256 }\n\
-         [[tables]]\nquantity = 'split_sum'\nmodel = 'lambert'\naxes = { mu = 40960 }\n",
+         [[tables]]\nquantity = 'split_sum'\nmodel = 'lambert'\naxes = { mu = 65536 }\n",
     );
     bake(&recipe.path, ["--check", "4", "--format", "npy", "--tolerance", "1e-2"]);
 }

@@ -8,7 +8,7 @@ mod readers;
 
 use common::*;
 use gonio::axis::Variable::{DeltaPhi, ThetaE, ThetaI};
-use gonio::check::Check;
+use gonio::check::{Check, VALUE_FLOOR};
 use gonio::models::MODELS;
 use gonio::plan::{Lobe, STORED_F32, TablePlan, VALUE_F32};
 use gonio::points::{Angles, PHI_MAX, Points};
@@ -50,7 +50,7 @@ fn anywhere(n: usize) -> Vec<Angles> {
 /// differently in two kernels, which is worth the budget of values; on the CPU always.
 #[test]
 fn are_those_of_a_table() {
-    for model in MODELS.into_iter().filter(|model| !model.is_delta() && !model.is_anisotropic()) {
+    for model in MODELS.into_iter().filter(|model| !model.is_delta()) {
         let roughness = model.shape.map(|_| 0.4);
         let axes = vec![axis(ThetaI, 7), axis(ThetaE, 13), axis(DeltaPhi, 9)];
         let plan = TablePlan::basis("table", &BRDF, model, roughness, axes).unwrap();
@@ -71,7 +71,8 @@ fn are_those_of_a_table() {
                 let (value, of_table) = (f64::from(value), table.values.get(k));
                 // φe is rounded to 4e-16, of δφ ≥ 0.4 or of 0.
                 let budget = budget + 1e-14;
-                assert!((value - of_table).abs() <= budget * of_table, "{}: {value}, {of_table}", model.name);
+                let scale = of_table.max(VALUE_FLOOR);
+                assert!((value - of_table).abs() <= budget * scale, "{}: {value}, {of_table}", model.name);
             }
         }
     }

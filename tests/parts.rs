@@ -75,7 +75,7 @@ fn integrals_agree_with_the_reference() {
                 let table = bake(evaluator, &plan, Check::All);
                 let worst = table.error.measured_max.unwrap();
                 println!("{}.{} {}: {worst:.1e}", model.name, plan.quantity.name, table.precision);
-                assert!(worst <= plan.tolerance.max(INTEGRAL_F32), "{plan}: {:?}", table.error);
+                assert!(worst <= model.integral_f32(), "{plan}: {:?}", table.error);
             }
         }
     }

@@ -4,14 +4,14 @@
 mod common;
 
 use common::*;
-use gonio::axis::Variable::{DeltaPhi, Mu, ThetaE, ThetaI};
+use gonio::axis::Variable::Mu;
 use gonio::bake::Evaluator;
 use gonio::check::Check;
 use gonio::gpu::{Kernel, compose, validate};
 use gonio::models::Model;
 use gonio::plan::{Precision, TablePlan};
-use gonio::quantity::{BRDF, Quantity, RHO_DH, RHO_HH, SPLIT_SUM};
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use gonio::quantity::{BRDF, SPLIT_SUM};
+use std::f64::consts::{PI, TAU};
 
 /// thickness nm, η of the film, F0 of the base, channel.
 type Film = [f64; 4];
@@ -233,13 +233,8 @@ fn f_is_positive_and_bounded() {
 /// Values at the extremes: of the angles, of α and of the film, within the model's own budget.
 #[test]
 fn values_agree_with_the_reference() {
-    let mut thetas = extreme_thetas();
-    thetas.extend(golden(6, 0.1).iter().map(|u| u * FRAC_PI_2));
-    let mut deltas = vec![0.0, 1e-7, 1e-4, 1e-2, FRAC_PI_2, PI - 1e-6, PI];
-    deltas.extend(golden(5, 0.7).iter().map(|u| u * PI));
     for film in FILMS {
-        let axes = vec![listed(ThetaI, &thetas), listed(ThetaE, &thetas), listed(DeltaPhi, &deltas)];
-        let plan = with(basis(&BRDF, under("ggx"), &EXTREME_ROUGHNESS, axes), film);
+        let plan = with(basis(&BRDF, under("ggx"), &EXTREME_ROUGHNESS, extreme_angles()), film);
         for (evaluator, budget) in evaluators().into_iter().zip(value_budgets(under("ggx"))) {
             let table = bake(evaluator, &plan, Check::All);
             let worst = table.error.measured_max.unwrap();
@@ -252,26 +247,8 @@ fn values_agree_with_the_reference() {
 /// Integrals meet the tolerance that is asked for, on both evaluators, with and without a lobe.
 #[test]
 fn integrals_meet_every_tolerance() {
-    let roughness = [0.0, 1e-2, 0.15, 0.4, 0.7, 1.0];
-    let thetas = [0.0, 0.5, 1.0, 1.3, 1.5, FRAC_PI_2 - 1e-3, FRAC_PI_2];
-    let (ggx, mirror) = (under("ggx"), under("mirror"));
     for film in FILMS {
-        let axes = |quantity: &Quantity| match quantity.name {
-            "rho_hh" => vec![],
-            _ => vec![listed(ThetaI, &thetas)],
-        };
-        for (quantity, of) in [(&RHO_DH, ggx), (&RHO_HH, ggx), (&RHO_DH, mirror), (&RHO_HH, mirror)] {
-            for tolerance in [1e-2, 1e-4, 1e-6] {
-                let plan =
-                    with(basis(quantity, of, &roughness, axes(quantity)), film).with_tolerance(tolerance);
-                for evaluator in evaluators() {
-                    let table = bake(evaluator, &plan, Check::All);
-                    let worst = table.error.measured_max.unwrap();
-                    println!("{}.{} {film:?} {tolerance:e}: {worst:.1e}", of.name, quantity.name);
-                    assert!(worst <= tolerance, "{plan} {film:?}: {:?}", table.error);
-                }
-            }
-        }
+        assert_term_meets_every_tolerance([under("ggx"), under("mirror")], |plan| with(plan, film));
     }
 }
 

@@ -26,7 +26,7 @@ fn everywhere() -> impl Iterator<Item = TablePlan> {
     let (thetas, deltas) = directions();
     let mut roughness = EXTREME_ROUGHNESS.to_vec();
     roughness.extend(golden(9, 0.4).iter().map(|u| 1e-3 + (1.0 - 1e-3) * u));
-    MODELS.into_iter().filter(|model| !model.is_delta() && !model.is_anisotropic()).map(move |model| {
+    MODELS.into_iter().filter(|model| !model.is_delta()).map(move |model| {
         let axes = vec![listed(ThetaI, &thetas), listed(ThetaE, &thetas), listed(DeltaPhi, &deltas)];
         basis(&BRDF, model, &roughness, axes)
     })

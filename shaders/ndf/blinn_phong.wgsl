@@ -10,34 +10,3 @@ fn ndf(h: Half, hz2: real, alpha: real) -> real {
 }
 const SCALE: real = 18487.364273692878; // 2¹⁵/√π
 const NDF_UNIT: real = 9.313225746154785e-10; // 2⁻³⁰
-
-/// Smith's Λ of Beckmann with the same α, as Walter et al. take it: (1 + 2Λ) μ = μ erf a + α s e^(−a²)/√π,
-/// a = μ/(α s).
-fn smith_roots(mu: real4, alpha: real4) -> real4 {
-    let scale = alpha * sqrt((1.0 - mu) * (1.0 + mu));
-    // What is beyond the largest exponent is 0, also where s = 0.
-    let a = mu / max(scale, 1e-3 * mu);
-    let tail = exp_neg(a * a);
-    return mu + tail * (0.5641895835477563 * scale - mu * erfcx(mu, scale));
-}
-
-fn smith_root(mu: real, alpha: real) -> real {
-    return smith_roots(real4(mu), real4(alpha)).x;
-}
-
-/// What `smith_root_at` needs of the fixed direction.
-struct Masked {
-    mu: real,
-    root: real4,  // (1 + 2Λ) μ
-    a2: real4,    // α²
-    alpha: real4,
-}
-
-fn masked(mu: real, alpha: real4) -> Masked {
-    return Masked(mu, smith_roots(real4(mu), alpha), alpha * alpha, alpha);
-}
-
-/// y (1 + 2Λ) μi at μi = μe x/y.
-fn smith_root_at(x: real4, y: real4, e: Masked) -> real4 {
-    return y * smith_roots(clamp(e.mu * x / y, real4(), real4(1.0)), e.alpha);
-}

@@ -18,6 +18,8 @@ pub(super) struct Subject<'a> {
     pub reference: &'a (dyn Fn(&Angles, f64) -> [f64; 2] + Sync),
     /// A channel at an α, in the words of `gonio eval`.
     pub name: &'a dyn Fn(usize, f64) -> String,
+    /// f below which f32 has lost digits to underflow, sr⁻¹; 0: where all have.
+    pub faint: f64,
 }
 
 /// The errors over a range of α.
@@ -160,8 +162,9 @@ impl Tally {
 /// What errors are relative to at least: [`VALUE_FLOOR`], or 2⁻¹⁰⁰ of the sum of the components. A component so
 /// much smaller than the other, as Fc = x⁵ is a hair from normal incidence, is the product of a large number
 /// with one that has left f32's exponents, 2⁻¹²⁶, where it loses digits and on some devices all of them.
-pub(super) fn floor(components: [f64; 2]) -> f64 {
-    VALUE_FLOOR.max((components[0] + components[1]) * 2f64.powi(-100))
+/// A model may lose digits earlier, below its `faint`.
+pub(super) fn floor(components: [f64; 2], faint: f64) -> f64 {
+    VALUE_FLOOR.max(faint).max((components[0] + components[1]) * 2f64.powi(-100))
 }
 
 /// The spacing of f32 at a positive value.
@@ -232,7 +235,7 @@ pub(super) fn measure(
             for ((angles, truth), (there, back)) in angles.iter().zip(&truths).zip(pairs) {
                 for channel in 0..channels {
                     let (value, reference) = (there[channel], truth[channel]);
-                    if tally.add(value, reference, floor(*truth)) {
+                    if tally.add(value, reference, floor(*truth, subject.faint)) {
                         let Angles { theta_i, phi_i, theta_e, phi_e } = angles;
                         // The shortest digits that read back as the same f64, 17 at most.
                         let eval = format!(
@@ -272,6 +275,7 @@ mod tests {
             },
             reference: &|_, _| [1.0, 0.0],
             name: &|_, _| "--model test".into(),
+            faint: 0.0,
         };
         measure(&mut subject, &[0.5], &angles, &|_| Ok(())).unwrap().remove(0)
     }

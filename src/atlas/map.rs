@@ -37,14 +37,14 @@ pub(super) fn measure(subject: &mut Subject, alpha: f64, shown: Option<f64>) -> 
         });
         let row: Vec<_> = row.collect();
         (subject.evaluate)(&[alpha], &row, &mut values)?;
-        let (reference, channels) = (subject.reference, subject.channels);
+        let Subject { reference, channels, faint, .. } = *subject;
         let found: Vec<f64> = row
             .par_iter()
             .zip(values.par_chunks_exact(channels))
             .map(|(angles, values)| {
                 let truth = reference(angles, alpha);
                 let error = |(&value, truth_of): (&f32, f64)| {
-                    let error = (f64::from(value) - truth_of).abs() / truth_of.max(floor(truth));
+                    let error = (f64::from(value) - truth_of).abs() / truth_of.max(floor(truth, faint));
                     if error.is_nan() { f64::INFINITY } else { error }
                 };
                 values.iter().zip(truth).map(error).fold(0.0, f64::max)

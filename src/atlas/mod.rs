@@ -33,7 +33,6 @@ use crate::error::{Error, Result};
 use crate::models::{Model, Shape};
 use crate::plan::{Lobe, VALUE_F32};
 use crate::points::{Angles, Points};
-use crate::reference;
 use crate::setting::Setting;
 use band::{Subject, Tally, measure};
 use serde::Serialize;
@@ -144,12 +143,10 @@ pub fn measure_model(
         channels,
         evaluate: &mut |alphas, angles, values| points.sweep(alphas, angles, values),
         reference: &|angles: &Angles, alpha| {
-            let Angles { theta_i, theta_e, .. } = *angles;
-            let angles =
-                reference::Angles { theta_i, theta_e, delta_phi: angles.delta_phi(), phi_i: angles.phi_i };
-            reference.brdf(&angles, &Setting { alpha, parameters }).unwrap_or([f64::NAN; 2])
+            reference.brdf(&angles.of_reference(), &Setting { alpha, parameters }).unwrap_or([f64::NAN; 2])
         },
         name: &name,
+        faint: model.faint().unwrap_or(0.0),
     };
     // A model without a shape has the same values at each; wide lobes have no decades.
     let alphas = match model.shape {

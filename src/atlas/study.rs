@@ -14,7 +14,7 @@ use crate::models;
 use crate::plan::Lobe;
 use crate::points::{Angles, Points};
 use crate::promises::{Parameter, Subject as _, Symmetry};
-use crate::reference::{self, GGX};
+use crate::reference::GGX;
 use std::f64::consts::PI;
 
 /// The row of directions that are rounded to f32, and nothing else.
@@ -109,12 +109,10 @@ fn form(
             evaluate(alphas[0], angles, values)
         },
         reference: &|angles, alpha| {
-            let Angles { theta_i, theta_e, .. } = *angles;
-            let angles =
-                reference::Angles { theta_i, theta_e, delta_phi: angles.delta_phi(), phi_i: angles.phi_i };
-            GGX.brdf(&angles, &alpha.into()).map_or([f64::NAN; 2], |[a, b]| [a + b, 0.0])
+            GGX.brdf(&angles.of_reference(), &alpha.into()).map_or([f64::NAN; 2], |[a, b]| [a + b, 0.0])
         },
         name: &|_, alpha| format!("--model ggx --set alpha={alpha:?} --set f0=1 --set f90=1"),
+        faint: 0.0,
     };
     let mut tallies = Vec::new();
     for &alpha in &alphas {

@@ -13,10 +13,11 @@ pub use stream::{Progress, Streaming};
 use crate::check::{Check, cross_check};
 use crate::cpu;
 use crate::error::{Error, Result};
+use crate::factor::Factor;
 use crate::gpu::{Device, DeviceChoice};
 use crate::interpolation;
 use crate::models::FINEST;
-use crate::plan::{Precision, Rule, STORED_F32, TablePlan, VALUE_F32};
+use crate::plan::{Lobe, Precision, Rule, STORED_F32, TablePlan, VALUE_F32};
 use crate::quantity::Evaluation;
 use crate::storage::{Storage, Stored};
 use crate::table::{Table, TableError, Values};
@@ -362,9 +363,13 @@ fn check_energy(plan: &TablePlan, table: &Table) -> Result<()> {
     }
     // A basis is weighed by F0 and F90 ≤ 1, so its components reflect together; RGB does not mix.
     let together = plan.is_basis();
+    // What is missing from a lobe counts with that lobe.
+    let is_missing = |lobe: &Lobe| lobe.factors.iter().any(Factor::is_missing);
+    let alone = plan.lobes.iter().all(is_missing);
     let bound: f64 = plan
         .lobes
         .iter()
+        .filter(|lobe| alone || !is_missing(lobe))
         .map(|lobe| lobe.weights.as_flattened().iter().copied().fold(0.0, f64::max) * lobe.rho_bound())
         .sum();
     for texel in 0..table.texels() {

@@ -2,7 +2,7 @@
 //! the factors are analytic; panels end at kinks.
 
 use super::Scale;
-use crate::mapped::Sample;
+use crate::mapped::{Fixed, Sample};
 use crate::pair::{Azimuth, Pair};
 use crate::quadrature::{Node, gauss_legendre};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -35,9 +35,10 @@ impl Nodes {
     }
 
     /// Directions for a fixed cosine, which weigh cos θ dω.
-    pub fn samples(&self, mu: f64, scale: &Scale, tolerance: f64) -> Vec<Sample> {
+    pub fn samples(&self, fixed: &Fixed, scale: &Scale, tolerance: f64) -> Vec<Sample> {
         let [theta, steep, phi] = self.counts(scale, tolerance).map(gauss_legendre);
-        let mut kinks = scale.kinks(mu);
+        let mu = fixed.mu;
+        let mut kinks = fixed.kinks.clone();
         kinks.extend(self.kinked.then_some(mu));
         let panels = |[low, high]: [f64; 2]| {
             let mut ends = vec![low];
@@ -69,7 +70,7 @@ impl Nodes {
         } else {
             turn(&phi, 0.0, PI).collect()
         };
-        let sin = ((1.0 - mu) * (1.0 + mu)).sqrt();
+        let sin = fixed.sin();
         let sample = |&(cos_e, sin_e, weight): &(f64, f64, f64)| {
             let pair = Pair::of_cosines_and_sines([mu, cos_e], [sin, sin_e]);
             azimuths.iter().map(move |&(azimuth, width)| Sample { pair, azimuth, weight: weight * width })

@@ -88,7 +88,7 @@ const INVOCATIONS_PER_DISPATCH: usize = 1 << 21;
 /// Bytes of a tile's result, and of the raw integrals behind it.
 const TILE_BYTES: usize = 1 << 25;
 const WORKGROUP: usize = 64;
-/// Points of integrals that are uploaded together: 10 MiB.
+/// Points of integrals that are uploaded together: 16 MiB in f32.
 const POINTS_PER_DISPATCH: usize = 1 << 18;
 /// 32 a workgroup of values, of which there are at most 65,535.
 const ROWS_PER_DISPATCH: usize = 1 << 20;
@@ -245,17 +245,18 @@ impl Baker {
             let order = stages.order(&rows);
             let order =
                 order.map(|order| self.init(bytemuck::cast_slice(&order), wgpu::BufferUsages::STORAGE));
-            let order: Vec<_> = order.iter().collect();
+            let order: Vec<_> = order.into_iter().collect();
             let range =
                 rows.start / inner.units * inner.per_unit..rows.end.div_ceil(inner.units) * inner.per_unit;
             let job = Job { base: count(rows.start * inner.per_unit)?, ..inner.job };
             let mut results = rows.len() * inner.per_unit;
             let raw = |results: usize| self.output(results * 2 * inner.precision.bytes());
             let mut output = if outer.is_empty() { buffer.clone() } else { raw(results) };
-            match &inner.mapped {
-                Some(work) => self.mapped_steps(inner, work, job, range, &output, &mut steps)?,
-                None => self.steps(inner, job, range, &order, &output, &mut steps)?,
-            }
+            let own = |range| match &inner.mapped {
+                Some(work) => self.points_of(inner, work, range),
+                None => order.clone(),
+            };
+            self.steps(inner, job, range, &own, &output, &mut steps)?;
             for (k, sum) in outer.iter().enumerate() {
                 let is_last = k + 1 == outer.len();
                 let columns = results / sum.job.nodes as usize;
@@ -275,30 +276,35 @@ impl Baker {
                     tiles: count(tiles)?,
                     ..sum.job
                 };
-                self.steps(sum, job, range, &[&output], &next, &mut steps)?;
+                self.steps(sum, job, range, &|_| vec![output.clone()], &next, &mut steps)?;
                 output = next;
             }
         }
         Ok(steps)
     }
 
-    /// The dispatches of a stage for some invocations: as many as the cost asks for.
+    /// The dispatches of a stage for some invocations: as many as the cost asks for, or as fit a buffer of points. Each
+    /// has `more_inputs` of its own.
     fn steps(
         &self,
         stage: &Stage,
         job: Job,
         range: Range<usize>,
-        more_inputs: &[&wgpu::Buffer],
+        more_inputs: &dyn Fn(Range<usize>) -> Vec<wgpu::Buffer>,
         output: &wgpu::Buffer,
         steps: &mut Vec<Step>,
     ) -> Result<()> {
         let pipeline = self.pipeline(stage.kernel, stage.model, stage.channels, stage.precision)?;
-        let per_step = (EVALUATIONS_PER_DISPATCH / stage.cost).clamp(WORKGROUP, INVOCATIONS_PER_DISPATCH);
+        let per_step = match stage.mapped {
+            Some(_) => (POINTS_PER_DISPATCH / stage.cost).max(1),
+            None => (EVALUATIONS_PER_DISPATCH / stage.cost).clamp(WORKGROUP, INVOCATIONS_PER_DISPATCH),
+        };
         for first in range.clone().step_by(per_step) {
             let end = (first + per_step).min(range.end);
             let job = Job { first: count(first)?, end: count(end)?, ..job };
             let job = self.init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
-            let buffers = [&job, output].into_iter().chain(&stage.inputs).chain(more_inputs.iter().copied());
+            let more = more_inputs(first..end);
+            let buffers = [&job, output].into_iter().chain(&stage.inputs).chain(&more);
             steps.push(Step {
                 pipeline: pipeline.clone(),
                 bind_group: self.bind(&pipeline, buffers.map(wgpu::Buffer::as_entire_binding)),
@@ -309,33 +315,10 @@ impl Baker {
         Ok(())
     }
 
-    /// The dispatches of integrals by directions that the host finds: as many as fit a buffer at a time.
-    fn mapped_steps(
-        &self,
-        stage: &Stage,
-        work: &MappedWork,
-        job: Job,
-        range: Range<usize>,
-        output: &wgpu::Buffer,
-        steps: &mut Vec<Step>,
-    ) -> Result<()> {
-        let pipeline = self.pipeline(stage.kernel, stage.model, stage.channels, stage.precision)?;
+    /// The points of some results of a stage whose directions the host finds.
+    fn points_of(&self, stage: &Stage, work: &MappedWork, range: Range<usize>) -> Vec<wgpu::Buffer> {
         let upload = Upload { baker: self, precision: stage.precision };
-        let per_step = (POINTS_PER_DISPATCH / stage.cost).max(1);
-        for first in range.clone().step_by(per_step) {
-            let end = (first + per_step).min(range.end);
-            let job = Job { first: count(first)?, end: count(end)?, ..job };
-            let job = self.init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
-            let texels = upload.texels(&work.texels(first..end));
-            let buffers = [&job, output].into_iter().chain(&stage.inputs).chain(&texels);
-            steps.push(Step {
-                pipeline: pipeline.clone(),
-                bind_group: self.bind(&pipeline, buffers.map(wgpu::Buffer::as_entire_binding)),
-                workgroups: [count((end - first).div_ceil(WORKGROUP))?, 1],
-                evaluations: ((end - first) * stage.cost) as u64,
-            });
-        }
-        Ok(())
+        upload.texels(&work.texels(range)).into()
     }
 
     /// The dispatches of a stage of values: windows of rows and of quads.

@@ -7,7 +7,7 @@ use super::device::Device;
 use super::evaluate::Flight;
 use super::stage::Job;
 use crate::error::Result;
-use crate::mapped::{POINT, Sample};
+use crate::mapped::{POINT, POINT_MUS, POINT_WEIGHT, Sample};
 use crate::pair::{Azimuth, Pair};
 use crate::plan::{Lobe, Precision};
 use crate::points::{Angles, At};
@@ -112,9 +112,9 @@ impl<'a> Points<'a> {
                 // A lobe with a factor has points of its own, whose weights are that.
                 let weighed = (!scale.is_one()).then(|| {
                     let times = |&point: &Factors| {
-                        let [_, _, _, _, mu_i, mu_e, ..] = point.map(f64::from);
+                        let [mu_i, mu_e] = POINT_MUS.map(|k| f64::from(point[k]));
                         let mut point = point;
-                        point[9] = scale.at(mu_i, mu_e) as f32;
+                        point[POINT_WEIGHT] = scale.at(mu_i, mu_e) as f32;
                         point
                     };
                     let weighed: Vec<_> = factors.par_iter().map(times).collect();

@@ -45,15 +45,11 @@ pub(super) struct Stage {
     pub cost: usize,
 }
 
-/// The rows of a table of values: every α with every pair.
+/// The rows of a table of values: every α with every θi, φi and θe.
 pub(super) struct Rows {
     alphas: Vec<f64>,
-    pairs: Vec<Row>,
-    /// How many φi there are, and how many θe: a row is of an α, a θi, a φi and a θe, the last of which turns fastest.
-    frames: usize,
-    thetas_e: usize,
-    /// μi and μe of each pair, and what the lobe is multiplied with at each α.
-    cosines: Vec<[f64; 2]>,
+    values: ValueWork,
+    /// What the lobe is multiplied with at each α.
     scales: Vec<Scale>,
 }
 
@@ -64,34 +60,15 @@ const PLACE: usize = 10;
 const SCALE: usize = 11;
 
 impl Rows {
-    fn new(alphas: &[f64], values: &ValueWork, scales: &[Scale]) -> Self {
-        let row = |pair: &Pair| {
-            let mut row = Row::default();
-            row.iter_mut().zip(pair.to_array()).for_each(|(out, x)| *out = x as f32);
-            row
-        };
-        let ValueWork { pairs, frames, thetas_e, .. } = values;
-        Self {
-            alphas: alphas.to_vec(),
-            pairs: pairs.iter().map(row).collect(),
-            frames: frames.len(),
-            thetas_e: *thetas_e,
-            cosines: pairs.iter().map(|pair| [pair.mu_i, pair.mu_e]).collect(),
-            scales: scales.to_vec(),
-        }
-    }
-
     /// Some of them as the kernel lays them out, those of a φi together: as many groups as there are φi.
     pub fn of(&self, units: &Range<usize>) -> Vec<Vec<Row>> {
-        let mut groups = vec![Vec::new(); self.frames];
+        let mut groups = vec![Vec::new(); self.values.frames.len()];
         for unit in units.clone() {
-            let (outer, theta_e) = (unit / self.thetas_e, unit % self.thetas_e);
-            let (outer, frame) = (outer / self.frames, outer % self.frames);
-            let thetas_i = self.pairs.len() / self.thetas_e;
-            let (alpha, theta_i) = (outer / thetas_i, outer % thetas_i);
-            let pair = theta_i * self.thetas_e + theta_e;
-            let mut row = self.pairs[pair];
-            let [mu_i, mu_e] = self.cosines[pair];
+            let (alpha, row) = (unit / self.values.rows(), unit % self.values.rows());
+            let (pair, frame) = self.values.place(row);
+            let Pair { mu_i, mu_e, .. } = *pair;
+            let mut row = Row::default();
+            row.iter_mut().zip(pair.to_array()).for_each(|(out, x)| *out = x as f32);
             // A tile has fewer rows than a float counts.
             row[PLACE] = (unit - units.start) as f32;
             row[SCALE] = self.scales.get(alpha).map_or(1.0, |scale| scale.at(mu_i, mu_e)) as f32;
@@ -138,7 +115,7 @@ impl Stages {
                     precision: Precision::F32,
                     job: Job::new(lobe, 1.0),
                     inputs: vec![upload.quads(values)],
-                    rows: Some(Rows::new(&alphas, values, &work.scales)),
+                    rows: Some(Rows { alphas, values: values.clone(), scales: work.scales.clone() }),
                     mapped: None,
                     per_unit: values.columns().div_ceil(4),
                     units: 1,
@@ -407,7 +384,7 @@ impl Upload<'_> {
     }
 
     fn pairs(&self, pairs: &[Pair]) -> wgpu::Buffer {
-        self.reals(pairs.iter().map(|pair| pair.to_array()).collect::<Vec<_>>().as_flattened())
+        self.reals(pairs.iter().map(|pair| pair.to_plain()).collect::<Vec<_>>().as_flattened())
     }
 
     fn azimuths(&self, azimuths: &[Azimuth]) -> wgpu::Buffer {

@@ -8,7 +8,7 @@ use super::fresnel::{
     Fresnel, conductor::Conductor, dielectric::Dielectric, f82::F82, none::Constant, schlick::Schlick,
     thin_film::ThinFilm,
 };
-use super::half_vector::stretched;
+use super::half_vector::{self, stretched};
 use super::masking::{
     Masking, Toward, ashikhmin_neubelt::AshikhminNeubelt, kelemen::Kelemen, none::Unmasked,
     schlick_ggx::SchlickGgx, schlick_ggx_direct::SchlickGgxDirect, smith_correlated::SmithCorrelated,
@@ -43,8 +43,10 @@ pub struct Microfacet {
     pub(crate) refused: fn(&Parameters) -> Option<&'static str>,
     /// The relative error of its values in f32.
     pub(crate) value_f32: fn(&Setting) -> f64,
-    /// f below which f32 has lost digits to underflow, sr⁻¹.
-    pub(crate) faint: f64,
+    /// The error of its integrals in f32, relative to the most they reach.
+    pub(crate) integral_f32: f64,
+    /// f below which f32 has lost digits to underflow, sr⁻¹, where that is earlier than of most.
+    pub(crate) faint: Option<f64>,
     /// How many more nodes in μ its mean over directions takes than Schlick's, at a tolerance.
     pub(crate) mean_nodes: fn(&Setting, f64) -> usize,
 }
@@ -200,7 +202,7 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
             N::derive(parameters);
             F::derive(parameters);
         },
-        rho_bound: if Self::UNBOUNDED.is_some() { f64::INFINITY } else { N::RHO_BOUND * F::BOUND },
+        rho_bound: Self::RHO_BOUND,
         parts: &Self::PARTS,
         integral: match Self::UNBOUNDED {
             Some(why) => Integral::Unbounded(why),
@@ -219,6 +221,11 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         why => why,
     };
 
+    const RHO_BOUND: f64 = match Self::UNBOUNDED {
+        Some(_) => f64::INFINITY,
+        None => of_masking(N::RHO_BOUNDS, M::TERM.name) * F::BOUND,
+    };
+
     const TERMS: Microfacet = Microfacet {
         ndf: N::TERM,
         masking: Some(M::TERM),
@@ -226,6 +233,7 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         metals: F::METALS,
         refused: F::refused,
         value_f32: |s| N::value_f32(s) + F::VALUE_F32,
+        integral_f32: N::INTEGRAL_F32,
         faint: N::FAINT,
         mean_nodes: F::mean_nodes,
     };
@@ -261,7 +269,7 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
             let cost = |mu| panels * N::most::<M>(Self::counts(mu, s, tolerance));
             [1.0, 0.3, 0.1, 0.03, 1e-2, 1e-3, 1e-4, MU_MIN].map(cost).into_iter().max().unwrap_or(1)
         },
-        mean: N::MEAN,
+        mean: if N::MEAN.is_none() && M::KINKS.most > 0 { Some(half_vector::mean) } else { N::MEAN },
         limit: |mu, s| (N::IS_MIRROR_AT_0 && N::axes(s) == [0.0; 2]).then(|| Self::mirror_limit(mu, s)),
     };
 
@@ -325,6 +333,27 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         let c = (projected / y.sqrt()).clamp(0.0, 1.0);
         F::fresnel(c, 1.0 - c, s).map(|f| f * all)
     }
+}
+
+/// The bound with a masking, 1 where none is listed. A loop, as the constant of a model is made at compile time.
+const fn of_masking(bounds: &[(&str, f64)], masking: &str) -> f64 {
+    let mut k = 0;
+    while k < bounds.len() {
+        if is_same(bounds[k].0, masking) {
+            return bounds[k].1;
+        }
+        k += 1;
+    }
+    1.0
+}
+
+const fn is_same(a: &str, b: &str) -> bool {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    let mut k = 0;
+    while k < a.len() && k < b.len() && a[k] == b[k] {
+        k += 1;
+    }
+    k == a.len() && k == b.len()
 }
 
 #[cfg(test)]

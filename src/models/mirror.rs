@@ -51,8 +51,9 @@ impl<F: Fresnel> Made<F> {
         metals: F::METALS,
         refused: F::refused,
         mean_nodes: F::mean_nodes,
-        faint: crate::promises::FAINT,
+        faint: None,
         value_f32: |_| crate::plan::VALUE_F32,
+        integral_f32: crate::plan::INTEGRAL_F32,
     };
     const PARTS: [Part; 2] = [F::TERM.part, TERM.part];
     const REFERENCE: reference::Mirror = reference::Mirror { fresnel: F::REFERENCE };

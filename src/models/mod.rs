@@ -22,7 +22,7 @@ use crate::error::{Error, Result};
 use crate::gpu::{Kernel, compose, validate};
 use crate::mapped::Map;
 use crate::pair::{Azimuth, Pair};
-use crate::plan::Precision;
+use crate::plan::{INTEGRAL_F32, Precision};
 use crate::reference::Reference;
 use crate::setting::{Parameters, Setting};
 use std::sync::{PoisonError, RwLock};
@@ -343,6 +343,18 @@ impl Model {
     /// The relative error of its values in f32 at a setting.
     pub(crate) fn value_f32_at(&self, s: &Setting) -> f64 {
         self.microfacet.map_or(self.value_f32, |made| (made.value_f32)(s))
+    }
+
+    /// The least tolerance of its integrals that f32 meets, with every weight 1: of what reflects more than 1,
+    /// roundings are so much more.
+    pub fn integral_f32(&self) -> f64 {
+        let relative = self.microfacet.map_or(INTEGRAL_F32, |made| made.integral_f32);
+        relative * if self.rho_bound.is_finite() { self.rho_bound.max(1.0) } else { 1.0 }
+    }
+
+    /// f below which f32 has lost digits to underflow, sr⁻¹, where that is earlier than of most.
+    pub(crate) fn faint(&self) -> Option<f64> {
+        self.microfacet?.faint
     }
 
     /// Whether f depends on both azimuths, and not on δφ alone.

@@ -222,7 +222,7 @@ impl Plan {
                     self.leave_out(what, why);
                     continue;
                 }
-                let axes = natural_axes(quantity, is_anisotropic(material))?;
+                let axes = natural_axes(quantity, material.is_anisotropic())?;
                 self.tables.push(
                     material_table(what, quantity, material, lobes.clone(), axes)?.with_tolerance(tolerance),
                 );
@@ -402,11 +402,6 @@ fn natural_axis(quantity: &Quantity, anisotropic: bool, variable: Variable) -> R
     Axis::natural(variable, count)
 }
 
-/// Whether a lobe of it tells azimuths from each other.
-fn is_anisotropic(material: &Material) -> bool {
-    material.lobes.iter().any(|lobe| models::find(&lobe.model).is_ok_and(Model::is_anisotropic))
-}
-
 /// `name`, with a number if another table has it.
 fn free_name(name: &str, taken: &mut HashSet<String>) -> String {
     let numbered = (2..).map(|k| format!("{name}-{k}"));
@@ -421,7 +416,7 @@ fn requested(request: &TableRequest, scene: &Scene, tolerance: f64) -> Result<Ta
     let mut axes: Vec<_> = given(Variable::Roughness).into_iter().collect();
     let anisotropic = match &request.subject {
         SubjectRequest::Basis { model, .. } => models::find(model)?.is_anisotropic(),
-        SubjectRequest::Material(name) => is_anisotropic(scene.material(name)?),
+        SubjectRequest::Material(name) => scene.material(name)?.is_anisotropic(),
     };
     let anisotropic = anisotropic || given(Variable::PhiI).or(given(Variable::PhiE)).is_some();
     for &variable in quantity.variables(anisotropic) {

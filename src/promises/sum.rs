@@ -242,12 +242,7 @@ impl Subject for Sum<'_> {
     }
 
     fn reference(&self, setting: &[f64], angles: &Angles) -> Option<Vec<f64>> {
-        let at = reference::Angles {
-            theta_i: angles.theta_i,
-            theta_e: angles.theta_e,
-            delta_phi: angles.delta_phi(),
-            phi_i: angles.phi_i,
-        };
+        let at = angles.of_reference();
         let new;
         let lobes = match self.last.0 == setting {
             true => &self.last.1,
@@ -345,8 +340,7 @@ impl Subject for Sum<'_> {
     }
 
     fn faint(&self) -> f64 {
-        let faint = |lobe: &Lobe| lobe.model.microfacet.map_or(FAINT, |made| made.faint);
-        self.last.1.iter().map(faint).fold(FAINT, f64::max)
+        self.last.1.iter().filter_map(|lobe| lobe.model.faint()).fold(FAINT, f64::max)
     }
 
     fn declared(&self) -> &[Declared] {

@@ -31,11 +31,11 @@ impl Reference for Microfacet {
     }
 
     fn rho_dh(&self, mu: f64, setting: &Setting) -> [f64; 2] {
-        self.rho_dh_within(self.masking.tolerance(), mu, setting, &|_| 1.0)
+        self.rho_dh_within(TOLERANCE, mu, setting, &|_| 1.0)
     }
 
     fn rho_dh_times(&self, mu: f64, setting: &Setting, factor: &dyn Fn(f64) -> f64) -> [f64; 2] {
-        self.rho_dh_within(self.masking.tolerance(), mu, setting, factor)
+        self.rho_dh_within(TOLERANCE, mu, setting, factor)
     }
 
     /// As the mean weighs ρ with 2μ, ρ may be the coarser the smaller μ is.
@@ -43,10 +43,7 @@ impl Reference for Microfacet {
         if self.is_mirror(setting) && self.mirror(0.5, setting) == 1.0 {
             return self.fresnel.mean(setting);
         }
-        definition::rho_hh(
-            |mu| self.rho_dh_within(self.masking.tolerance() / mu, mu, setting, &|_| 1.0),
-            setting.alpha,
-        )
+        definition::rho_hh(|mu| self.rho_dh_within(TOLERANCE / mu, mu, setting, &|_| 1.0), setting.alpha)
     }
 
     fn factors(&self, angles: &Angles, setting: &Setting) -> Option<Factors> {
@@ -55,7 +52,6 @@ impl Reference for Microfacet {
 }
 
 /// Of ρ_dh, absolute.
-#[cfg(test)]
 const TOLERANCE: f64 = 1e-11;
 
 /// The integral over θm is noise to the one over φ, so it has to be finer by this factor.
@@ -159,7 +155,11 @@ impl Microfacet {
             self.fresnel.weights(cos_d, 1.0 - cos_d, setting).map(|fresnel| value * fresnel)
         };
         let horizon = (tan_horizon(mu, cos_phi) / scale).asinh();
-        integrate(integrand, &even_breaks(0.0, horizon, PANEL), tolerance).value_or_nan()
+        let mut breaks = even_breaks(0.0, horizon, PANEL);
+        let kinks = self.masking.kinks(wo.x * cos_phi, mu).into_iter().map(|t| (t / scale).asinh());
+        breaks.extend(kinks.filter(|&v| 0.0 < v && v < horizon));
+        breaks.sort_by(f64::total_cmp);
+        integrate(integrand, &breaks, tolerance).value_or_nan()
     }
 }
 

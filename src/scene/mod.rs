@@ -18,6 +18,7 @@ pub use recipe::parse as parse_recipe;
 use crate::axis::{Axis, Variable};
 use crate::error::{Error, Result};
 use crate::factor::{Compensation, Factor};
+use crate::models::{self, Model};
 use crate::plan::Rule;
 use crate::storage::Storage;
 #[cfg(feature = "scene")]
@@ -39,6 +40,13 @@ pub struct Scene {
     pub left_out: Vec<LeftOut>,
     /// What the user should know before trusting the tables.
     pub warnings: Vec<String>,
+}
+
+impl Material {
+    /// Whether a lobe of it tells azimuths from each other.
+    pub fn is_anisotropic(&self) -> bool {
+        self.lobes.iter().any(|lobe| models::find(&lobe.model).is_ok_and(Model::is_anisotropic))
+    }
 }
 
 impl Scene {

@@ -6,9 +6,10 @@ use gonio::bake::{Evaluator, Stages, Unobserved};
 use gonio::check::Check;
 use gonio::gpu::{DeviceChoice, INSTALL};
 use gonio::models::{self, Model};
-use gonio::plan::{INTEGRAL_F32, Precision, STORED_F32, TablePlan, VALUE_F32};
-use gonio::quantity::Quantity;
+use gonio::plan::{Precision, STORED_F32, TablePlan, VALUE_F32};
+use gonio::quantity::{Quantity, RHO_DH, RHO_HH};
 use gonio::table::Table;
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::OnceLock;
 
 /// The device under test. There must be one: a suite that skips proves nothing.
@@ -57,7 +58,7 @@ pub fn basis(
     let swept = model.shape.map(|_| listed(Variable::Roughness, roughness));
     let axes = swept.into_iter().chain(axes).collect();
     let plan = TablePlan::basis("test", quantity, model, None, axes).unwrap();
-    let exact = [INTEGRAL_F32, model.value_f32]
+    let exact = [model.integral_f32(), model.value_f32]
         .into_iter()
         .find(|&t| plan.clone().with_tolerance(t).precision() == Precision::F32);
     plan.with_tolerance(exact.unwrap())
@@ -88,3 +89,34 @@ pub fn extreme_thetas() -> Vec<f64> {
 /// The extremes of roughness whose lobes have values: α from 1e-6 to 1.
 pub const EXTREME_ROUGHNESS: [f64; 7] =
     [1e-3, 1e-2, 0.031_622_776_601_683_79, 0.1, 0.316_227_766_016_837_9, 0.7, 1.0];
+
+/// θi, θe and δφ at their extremes, and some between.
+pub fn extreme_angles() -> Vec<Axis> {
+    let mut thetas = extreme_thetas();
+    thetas.extend(golden(6, 0.1).iter().map(|u| u * FRAC_PI_2));
+    let mut deltas = vec![0.0, 1e-7, 1e-4, 1e-2, FRAC_PI_2, PI - 1e-6, PI];
+    deltas.extend(golden(5, 0.7).iter().map(|u| u * PI));
+    let thetas = |variable| listed(variable, &thetas);
+    vec![thetas(Variable::ThetaI), thetas(Variable::ThetaE), listed(Variable::DeltaPhi, &deltas)]
+}
+
+/// ρ_dh and ρ_hh of a Fresnel term on models with and without a lobe meet each tolerance, on both evaluators; `with`
+/// gives it its parameters.
+pub fn assert_term_meets_every_tolerance(models: [&'static Model; 2], with: impl Fn(TablePlan) -> TablePlan) {
+    let roughness = [0.0, 1e-2, 0.15, 0.4, 0.7, 1.0];
+    let thetas = [0.0, 0.5, 1.0, 1.3, 1.5, FRAC_PI_2 - 1e-3, FRAC_PI_2];
+    for of in models {
+        for (quantity, axes) in [(&RHO_DH, vec![listed(Variable::ThetaI, &thetas)]), (&RHO_HH, vec![])] {
+            for tolerance in [1e-2, 1e-4, 1e-6] {
+                let plan = with(basis(quantity, of, &roughness, axes.clone())).with_tolerance(tolerance);
+                for evaluator in evaluators() {
+                    let table = bake(evaluator, &plan, Check::All);
+                    let worst = table.error.measured_max.unwrap();
+                    let set = &plan.lobes[0].parameters;
+                    println!("{}.{} {set:?} {tolerance:e}: {worst:.1e}", of.name, quantity.name);
+                    assert!(worst <= tolerance, "{plan} {set:?}: {:?}", table.error);
+                }
+            }
+        }
+    }
+}

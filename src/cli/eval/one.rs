@@ -8,7 +8,6 @@ use crate::error::{Error, Result};
 use crate::pair::MU_MIN;
 use crate::plan::{Lobe, TablePlan};
 use crate::points::{Angles, Points};
-use crate::reference;
 use serde::Serialize;
 use serde_json::json;
 
@@ -79,12 +78,7 @@ fn relative_difference(value: &[f32], reference: &[f64]) -> f64 {
 }
 
 fn factors(lobe: &Lobe, angles: &Angles) -> Option<Factors> {
-    let Angles { theta_i, theta_e, phi_i, .. } = *angles;
-    let delta_phi = angles.delta_phi();
-    let factors = lobe
-        .model
-        .reference?
-        .factors(&reference::Angles { theta_i, theta_e, delta_phi, phi_i }, &lobe.setting_at(None))?;
+    let factors = lobe.model.reference?.factors(&angles.of_reference(), &lobe.setting_at(None))?;
     let f = |&[a, b]: &[f64; 2]| a * factors.f[0] + b * factors.f[1];
     let f = lobe.weights.iter().map(f).collect();
     Some(Factors { model: lobe.model.name, d: factors.d, g2: factors.g2, f })

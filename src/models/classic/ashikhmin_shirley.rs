@@ -19,7 +19,7 @@
 use super::cosine::{self, COSINE_F32};
 use crate::mapped::Map;
 use crate::models::fresnel::schlick;
-use crate::models::half_vector::Kinks;
+use crate::models::half_vector::{self, Kinks};
 use crate::models::{Component, Integral, Model, Shape, part};
 use crate::pair::Half;
 use crate::reference;
@@ -40,7 +40,7 @@ pub(crate) static MODEL: Model = Model {
     integral: Integral::Mapped(Map {
         samples: |fixed, s, tolerance| cosine::samples(fixed, s, tolerance, Kinks::OF_EQUAL_COSINES),
         most: |s, tolerance| cosine::most(s, tolerance, &Kinks::OF_EQUAL_COSINES),
-        mean: None,
+        mean: Some(half_vector::mean),
         limit: |mu, s| (s.alpha == 0.0).then(|| schlick::fresnel(mu, 1.0 - mu)),
     }),
     lobe: |p, a, s| {

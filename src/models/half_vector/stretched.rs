@@ -2,13 +2,14 @@
 //! of α(φ), 1/α(φ)² = cos²φ/αx² + sin²φ/αy², and the rays are as dense as a turn dχ of the unstretched plane,
 //! tan φ = (αy/αx) tan χ.
 
-use super::{Normals, Ray, along, normal};
+use super::{Normals, along, normal};
 use crate::mapped::{Fixed, Sample};
 use crate::models::SlopeCounts;
 use crate::models::masking::Masking;
 use crate::models::ndf::Ndf;
 use crate::quadrature::gauss_legendre;
 use crate::setting::Setting;
+use crate::slopes::Turn;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Panels of χ for each side of `SlopeCounts`: eight in all.
@@ -24,8 +25,8 @@ pub(crate) fn samples<N: Ndf, M: Masking>(
 ) -> Vec<Sample> {
     let [x, y] = N::axes(s);
     let mu = fixed.mu;
-    let sin = ((1.0 - mu) * (1.0 + mu)).sqrt();
-    let counts = counts[0];
+    let tan = fixed.sin() / mu;
+    let counts = fixed.counts(counts[0]);
     let (rule, nodes) = (gauss_legendre(counts.azimuths), gauss_legendre(counts.nodes));
     // χ of φ, in the same quadrant.
     let turned = |phi: f64| {
@@ -67,11 +68,11 @@ pub(crate) fn samples<N: Ndf, M: Masking>(
                 let (cos_phi, sin_phi) = (x * cos_chi / alpha, y * sin_chi / alpha);
                 let (sin_i, cos_i) = fixed.phi.sin_cos();
                 let (cos, sin_turn) = (cos_phi * cos_i + sin_phi * sin_i, sin_phi * cos_i - cos_phi * sin_i);
-                let ray = Ray::new([mu, sin], [cos, sin_turn], weight);
+                let turn = Turn::new(tan, [cos, sin_turn], weight);
                 let s = Setting { alpha, ..*s };
                 let (end, at) = (|t| N::fine_end(t, &s), |r| normal::<N>(N::fine_map(r, &s), &s));
                 let normals = Normals { end: &end, at: &at, kinks: M::KINKS };
-                along(&ray, fixed, &nodes, tolerance, &normals, &mut samples);
+                along(&turn, fixed, &nodes, tolerance, &normals, &mut samples);
             }
         }
     }

@@ -25,7 +25,7 @@ impl Ndf for Beckmann {
         name: "beckmann",
         summary: "Beckmann microfacets",
         source: "Walter et al. 2007, eq. 20 and 25",
-        part: part!("ndf/beckmann", "elementary"),
+        part: part!("ndf/beckmann", "elementary", "ndf/smith_of_beckmann", "ndf/smith"),
     };
     const REFERENCE: &'static dyn reference::Ndf = &reference::Beckmann;
     const VALUE_F32: f64 = BECKMANN_F32;
@@ -70,7 +70,7 @@ impl Stretch for Beckmann {
         name: "beckmann-anisotropic",
         summary: "anisotropic Beckmann microfacets",
         source: "Walter et al. 2007, eq. 20; Heitz 2014, eq. 83 and 84",
-        part: part!("ndf/beckmann", "elementary"),
+        part: Self::TERM.part,
     };
     /// The exponent x ≤ 128 has 5.7 r roundings more.
     const ROUNDINGS: [f64; 2] = [700.0, 730.0];

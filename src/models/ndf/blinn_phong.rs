@@ -12,8 +12,8 @@
 //! Nearly Beckmann, which it becomes as α → 0. Smith's Λ is Beckmann's with the same α, as Walter et al. take it (section
 //! 5.2): there is no closed form of its own. α → 0 is the mirror.
 //!
-//! Kept: finite, not negative, reciprocal. Broken where rough: energy, as Λ is another's: ρ_dh reaches √π at α = 1 where
-//! ωi grazes, the most there is, 1.25 at α = 0.7, 1.03 at 0.3.
+//! Kept: finite, not negative, reciprocal. Broken where rough: energy with Smith's maskings, as Λ is another's: ρ_dh reaches √π at
+//! α = 1 where ωi grazes, the most there is, 1.25 at α = 0.7, 1.03 at 0.3.
 
 use super::beckmann::Beckmann;
 use super::{Map, Ndf};
@@ -34,12 +34,13 @@ impl Ndf for BlinnPhong {
         name: "blinn-phong",
         summary: "Blinn–Phong microfacets, Beckmann's Λ",
         source: "Walter et al. 2007, eq. 20 and 30",
-        part: part!("ndf/blinn_phong", "elementary"),
+        part: part!("ndf/blinn_phong", "elementary", "ndf/smith_of_beckmann", "ndf/smith"),
     };
     const REFERENCE: &'static dyn reference::Ndf = &reference::BlinnPhong;
     const VALUE_F32: f64 = BLINN_PHONG_F32;
-    /// √π, of α = 1 at grazing.
-    const RHO_BOUND: f64 = 1.7725;
+    /// √π, and measured; of α = 1 at grazing.
+    const RHO_BOUNDS: &'static [(&'static str, f64)] =
+        &[("smith-correlated", 1.7725), ("smith-separable", 1.345)];
 
     fn ndf(h: &Half, hz2: f64, &Setting { alpha, .. }: &Setting) -> f64 {
         let exponent = (1.0 - alpha) * (1.0 + alpha) / (alpha * alpha);

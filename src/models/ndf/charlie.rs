@@ -19,8 +19,8 @@
 //!
 //! Kept: finite, not negative, reciprocal. Broken: energy, as the fit is not Smith's Λ of D: ρ_dh at θi = 88° is 2.9
 //! at α = 1/200, 1.3 at 0.03, 0.9 at 0.1 and 0.9 at 1; where ωi grazes to 2⁻²⁴ it is 9.0, 4.0, 2.8 and 5.1. Kelemen's
-//! masking, which depends on the half vector alone, keeps it. Nothing bounds it with schlick-ggx, whose k vanishes with α,
-//! and with none.
+//! masking and v-cavity, which know nothing of Λ, keep it. Nothing bounds it with schlick-ggx, whose k vanishes with α, and
+//! with none.
 
 use super::{Ndf, charlie_map};
 use crate::mapped::{Fixed, Sample};
@@ -42,20 +42,29 @@ pub(super) const ALPHA_LEAST: f64 = 0.005;
 /// four of c ln x, which weigh a/4 = 6.3 in L, whose sum and 21 − L, of 20 to 40, round six times.
 const CHARLIE_F32: f64 = (40.0 + 9.0 * 128.0 + 86.0 + 180.0) / (1 << 24) as f64;
 
+/// Of a direction's Λ all of an integral has the same error: its exponent, from 8 to 18, is the last of six roundings of
+/// 2⁻²⁰ at most.
+const FIT_F32: f64 = 6.0 / (1 << 20) as f64;
+
 impl Ndf for Charlie {
     const TERM: Term = Term {
         name: "charlie",
         summary: "Charlie's fibres, for cloth",
         source: "Estevez & Kulla 2017, eq. 2 to 4",
-        part: part!("ndf/charlie", "elementary"),
+        part: part!("ndf/charlie", "elementary", "ndf/smith"),
     };
     const REFERENCE: &'static dyn reference::Ndf = &reference::Charlie;
     const SHAPE: Shape = Shape::SHEEN;
     const IS_MIRROR_AT_0: bool = false;
     const VALUE_F32: f64 = CHARLIE_F32;
-    /// Measured, with the masking that lets most through, Schlick's for lights; with the fit itself it is 8.98. Both are at
-    /// α = 1/200 where ωi grazes.
-    const RHO_BOUND: f64 = 13.7;
+    const INTEGRAL_F32: f64 = crate::plan::INTEGRAL_F32 + FIT_F32;
+    /// Measured, where ωi grazes: at α = 1/200, but of smith-separable, whose is at 1.
+    const RHO_BOUNDS: &'static [(&'static str, f64)] = &[
+        ("smith-correlated", 8.98),
+        ("smith-separable", 2.72),
+        ("schlick-ggx-direct", 16.9),
+        ("ashikhmin-neubelt", 5.67),
+    ];
 
     fn ndf(h: &Half, hz2: f64, &Setting { alpha, .. }: &Setting) -> f64 {
         let inverse = 1.0 / alpha.max(ALPHA_LEAST);
@@ -70,7 +79,7 @@ impl Ndf for Charlie {
 
     /// |h|² sin²θm leaves f32 below 2⁻¹²⁶, sin θm below 1e-19 of |h|: at α = 1, where D is in proportion to it, that is 1e-19
     /// in f, which is within 1e-6 of values from here on.
-    const FAINT: f64 = 1e-13;
+    const FAINT: Option<f64> = Some(1e-13);
 
     fn samples<M: Masking>(
         fixed: &Fixed,

@@ -74,7 +74,7 @@ impl Stretch for Ggx {
         name: "ggx-anisotropic",
         summary: "anisotropic GGX microfacets",
         source: "Walter et al. 2007, eq. 20; Heitz 2014, eq. 85 and 86",
-        part: part!("ndf/ggx"),
+        part: Self::TERM.part,
     };
     const ROUNDINGS: [f64; 2] = [60.0, 12.0];
     const COUNTS: [[usize; 2]; 10] =

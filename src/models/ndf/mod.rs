@@ -37,10 +37,12 @@ pub(crate) trait Ndf: Sized {
     const IS_MIRROR_AT_0: bool = true;
     /// The relative error of its values in f32.
     const VALUE_F32: f64 = crate::plan::VALUE_F32;
-    /// f below which f32 has lost digits to underflow, sr⁻¹.
-    const FAINT: f64 = crate::promises::FAINT;
-    /// The bound of ρ_dh, with any masking that keeps it bounded: 1, unless its Λ is not Smith's of these normals.
-    const RHO_BOUND: f64 = 1.0;
+    /// The error of its integrals in f32, relative to the most they reach.
+    const INTEGRAL_F32: f64 = crate::plan::INTEGRAL_F32;
+    /// f below which f32 has lost digits to underflow, sr⁻¹, where that is earlier than of most.
+    const FAINT: Option<f64> = None;
+    /// The maskings with which ρ_dh exceeds 1, and its bound there: none, unless Λ is not Smith's of these normals.
+    const RHO_BOUNDS: &'static [(&'static str, f64)] = &[];
     /// Where ρ(μ, α) is not analytic, if that was measured.
     const BRANCHES: Option<Branches> = None;
 

@@ -23,9 +23,9 @@ pub(crate) struct Facet {
 
 /// G2(ωi, ωe): the share of microfacets that are neither masked nor shadowed.
 pub(crate) trait Masking: Sync {
-    /// What ρ_dh is integrated to, absolutely: kinks that no break is at cost digits.
-    fn tolerance(&self) -> f64 {
-        1e-11
+    /// tan θm at which G2 has a kink, for ωo = (sin θo cos φ, ·, cos θo) about the azimuth φ of ωm.
+    fn kinks(&self, _x_o: f64, _mu_o: f64) -> Vec<f64> {
+        Vec::new()
     }
 
     /// G2 above the horizon.
