@@ -60,7 +60,14 @@ pub(super) fn rho_dh(f: impl Fn(&Pair) -> [f64; 2], tolerance: f64, mu: f64, wid
         }
         integrate(integrand, &breaks, FINER * tolerance).value_or_nan()
     };
-    integrate(slice, &even_breaks(-reach, reach, PANEL), tolerance).value_or_nan()
+    let mut breaks = even_breaks(-reach, reach, PANEL);
+    // Where the normals of equal cosines pass through the peak, tan θi |cos φ| ~ width.
+    let near = |multiple: f64| (multiple * width / sin).min(1.0).asin() / mu;
+    for u in [1.0, 5.0, 25.0].map(|multiple| near(multiple).asinh()) {
+        breaks.extend([-u, u].into_iter().filter(|u| u.abs() < reach));
+    }
+    breaks.sort_by(f64::total_cmp);
+    integrate(slice, &breaks, tolerance).value_or_nan()
 }
 
 /// The positive root of μ tan² − 2 x tan − μ = 0, where cos θe = 0.
