@@ -12,7 +12,7 @@ use crate::pair::{Azimuth, Half, Pair};
 use crate::quadrature::{Node, gauss_legendre};
 use crate::setting::Setting;
 use crate::slopes::{Turn, turn_of, turn_scale, turns};
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Where a lobe's normals are, and where it is not smooth: for c = tan θe cos φ, with φ the azimuth of ωm from that of
 /// ωe.
@@ -54,16 +54,20 @@ impl Kinks {
     pub const OF_EQUAL_COSINES: Self = Self { breaks: |c| vec![c], most: 1, is_sharp: true, ..Self::NONE };
 }
 
-/// cos θ of the directions whose ρ make the mean ∫ ρ 2μ dμ of a lobe with kinks, and their weights, by μ = sin²(πx/2):
-/// ρ turns where μ ~ α, and where θ ~ α too, as a kink lies on the peak there. The nodes of each tolerance leave a third
-/// of it at most, measured for Ashikhmin and Shirley's over α.
+/// cos θ of the directions whose ρ make the mean ∫ ρ 2μ dμ of a lobe with kinks, and their weights. ρ turns where μ ~ α,
+/// and where θ ~ α too, as a kink lies on the peak there: √μ below, √(1 − μ) above μ = 1/√2, where v-cavity's ρ has a
+/// seam. The nodes of each tolerance on each side leave a third of it at most, measured for v-cavity and for Ashikhmin and
+/// Shirley's over α.
 pub(super) fn mean(tolerance: f64) -> Vec<Node> {
-    const NODES: [usize; 10] = [4, 4, 6, 10, 16, 20, 28, 36, 48, 64];
-    let node = |Node { x, weight }| {
-        let (sin, cos) = (FRAC_PI_2 * x).sin_cos();
-        Node { x: sin * sin, weight: weight * TAU * sin * sin * sin * cos }
+    const NODES: [usize; 10] = [3, 4, 6, 8, 12, 16, 20, 26, 32, 40];
+    let below = |n: &Node| [FRAC_1_SQRT_2 * n.x * n.x, FRAC_1_SQRT_2 * n.x * n.weight];
+    let above = |n: &Node| {
+        let width = 1.0 - FRAC_1_SQRT_2;
+        [1.0 - width * n.x * n.x, width * n.x * n.weight]
     };
-    gauss_legendre(NODES[decade(tolerance)]).into_iter().map(node).collect()
+    let nodes = gauss_legendre(NODES[decade(tolerance)]);
+    let all = nodes.iter().map(below).chain(nodes.iter().map(above));
+    all.map(|[mu, half]| Node { x: mu, weight: 4.0 * mu * half }).collect()
 }
 
 /// Directions of an NDF's normals.
