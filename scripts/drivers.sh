@@ -49,12 +49,12 @@ install_drivers() {
     unpack swiftshader chromium-common libvk_swiftshader.so >>"$cache/apt.log" 2>&1 || true
 }
 
-# Lines "test result" of cargo's output; a test is FILE::NAME.
+# Lines "test result" of cargo's output; a test of the suite is FILE::NAME.
 results() {
-    awk '/^ +Running /     { file = $2 == "unittests" ? $3 : $2; sub(/.*\//, "", file); sub(/\.rs$/, "", file) }
-         /^ +Doc-tests /   { file = "doc" }
+    awk '/^ +Running /     { file = $2 == "unittests" ? "unit::" : "" }
+         /^ +Doc-tests /   { file = "doc::" }
          /^test .* \.\.\. / { name = $0; sub(/^test /, "", name); sub(/ - should panic/, "", name)
-                             sub(/ \.\.\. .*/, "", name); gsub(/ /, "", name); print file "::" name, $NF }' "$1"
+                             sub(/ \.\.\. .*/, "", name); gsub(/ /, "", name); print file name, $NF }' "$1"
 }
 
 # The atlas of GGX: largest relative errors, and how many values change when ωi and ωe are exchanged.

@@ -1,16 +1,17 @@
 // Values of a BRDF over (roughness, θi, θe, δφ): no trigonometry, wide stores. Rows are padded to whole quads
 // of azimuths. An invocation takes four rows and of their quads every eighth. It reads rows, weights and
 // counts once and first: after a store, software drivers read whatever it was again. The quads of a dispatch
-// are a window that fits a uniform buffer, which they read at half the price of storage.
+// are a window that fits a uniform buffer, which they read at half the price of storage; each factor lies by itself,
+// so that what a lobe does not take is not read.
 
-struct Quad {
-    sin2: real4, // sin²(δ/2)
-    cos2: real4, // cos²(δ/2)
-    back: real4, // max(0, −cos δ)
-    cp: real4,   // (cos φi ± cos φe)/2, (sin φi ± sin φe)/2
-    cm: real4,
-    sp: real4,
-    sm: real4,
+struct Quads {
+    sin2: array<real4, WINDOW>, // sin²(δ/2)
+    cos2: array<real4, WINDOW>, // cos²(δ/2)
+    back: array<real4, WINDOW>, // max(0, −cos δ)
+    cp: array<real4, WINDOW>,   // (cos φi ± cos φe)/2, (sin φi ± sin φe)/2
+    cm: array<real4, WINDOW>,
+    sp: array<real4, WINDOW>,
+    sm: array<real4, WINDOW>,
 }
 
 struct Azimuths {
@@ -38,7 +39,7 @@ struct Row {
 
 @group(0) @binding(1) var<storage, read_write> values: array<vec4f>;
 @group(0) @binding(2) var<storage, read> rows: array<Given>;
-@group(0) @binding(3) var<uniform> quads: array<Quad, WINDOW>;
+@group(0) @binding(3) var<uniform> quads: Quads;
 
 const LANES = 8u;
 
@@ -52,7 +53,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let w = weights();
     let columns = job.columns;
     for (var quad = id.x; quad < columns; quad += LANES) {
-        let z = quads[quad];
+        let z = azimuths_of(quad);
         evaluate(row0, quad, z, w);
         evaluate(row1, quad, z, w);
         evaluate(row2, quad, z, w);
@@ -69,26 +70,32 @@ fn row_at(row: u32) -> Row {
     return Row(pair, given.scale, lobe_row(pair, pair.own), first, there == row);
 }
 
-fn evaluate(row: Row, quad: u32, z: Quad, w: Weights) {
+fn evaluate(row: Row, quad: u32, z: Azimuths, w: Weights) {
     if ADD && !row.is_there {
         return;
     }
-    let z4 = azimuths_of(z);
-    let a0 = lobe(row.pair, z4.a, row.pair.own, row.lobe);
-    let a1 = lobe(row.pair, z4.b, row.pair.own, row.lobe);
-    let a2 = lobe(row.pair, z4.c, row.pair.own, row.lobe);
-    let a3 = lobe(row.pair, z4.d, row.pair.own, row.lobe);
+    let a0 = lobe(row.pair, z.a, row.pair.own, row.lobe);
+    let a1 = lobe(row.pair, z.b, row.pair.own, row.lobe);
+    let a2 = lobe(row.pair, z.c, row.pair.own, row.lobe);
+    let a3 = lobe(row.pair, z.d, row.pair.own, row.lobe);
     // What the row is multiplied with is the weights' to bear: 1 changes no bit.
     let s = row.scale;
     store(row.first + quad * CHANNELS, Weights(s * w.r, s * w.g, s * w.b), a0, a1, a2, a3);
 }
 
-fn azimuths_of(z: Quad) -> Azimuths {
+fn azimuths_of(quad: u32) -> Azimuths {
+    let sin2 = quads.sin2[quad];
+    let cos2 = quads.cos2[quad];
+    let back = quads.back[quad];
+    let cp = quads.cp[quad];
+    let cm = quads.cm[quad];
+    let sp = quads.sp[quad];
+    let sm = quads.sm[quad];
     return Azimuths(
-        Azimuth(z.sin2.x, z.cos2.x, z.back.x, 0.0, 0.0, z.cp.x, z.cm.x, z.sp.x, z.sm.x),
-        Azimuth(z.sin2.y, z.cos2.y, z.back.y, 0.0, 0.0, z.cp.y, z.cm.y, z.sp.y, z.sm.y),
-        Azimuth(z.sin2.z, z.cos2.z, z.back.z, 0.0, 0.0, z.cp.z, z.cm.z, z.sp.z, z.sm.z),
-        Azimuth(z.sin2.w, z.cos2.w, z.back.w, 0.0, 0.0, z.cp.w, z.cm.w, z.sp.w, z.sm.w),
+        Azimuth(sin2.x, cos2.x, back.x, 0.0, 0.0, cp.x, cm.x, sp.x, sm.x),
+        Azimuth(sin2.y, cos2.y, back.y, 0.0, 0.0, cp.y, cm.y, sp.y, sm.y),
+        Azimuth(sin2.z, cos2.z, back.z, 0.0, 0.0, cp.z, cm.z, sp.z, sm.z),
+        Azimuth(sin2.w, cos2.w, back.w, 0.0, 0.0, cp.w, cm.w, sp.w, sm.w),
     );
 }
 

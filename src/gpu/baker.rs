@@ -1,6 +1,6 @@
 //! Records the baking of a table on a device that the caller owns.
 
-use super::compose::{Kernel, QUAD_BYTES, VALUE_WINDOW, compose, validate};
+use super::compose::{Kernel, QUAD_FACTORS, VALUE_WINDOW, compose, validate};
 use super::loops::{self, SAFE_TURNS};
 use super::stage::{Job, Rows, Stage, Stages, TILE_SUMS, Upload};
 use crate::axis::Variable;
@@ -330,7 +330,7 @@ impl Baker {
         output: &wgpu::Buffer,
         steps: &mut Vec<Step>,
     ) -> Result<()> {
-        const BYTES: u64 = (VALUE_WINDOW * QUAD_BYTES) as u64;
+        const BYTES: u64 = (VALUE_WINDOW * QUAD_FACTORS * 16) as u64;
         let pipeline = &self.pipeline(stage.kernel, stage.model, stage.channels, stage.precision)?;
         let groups = rows.of(units);
         let all = groups.concat();

@@ -54,10 +54,10 @@ pub enum Kernel {
 /// f64, what every device binds.
 pub(super) const COARSE_NODES: usize = 2048;
 
-/// Quads of azimuths that one dispatch of values takes: [`QUAD_BYTES`] each in a uniform buffer, of which every device
-/// binds 64 KiB.
+/// Quads of azimuths that one dispatch of values takes, each of so many factors: in a uniform buffer, of which every
+/// device binds 64 KiB.
 pub(super) const VALUE_WINDOW: usize = 512;
-pub(super) const QUAD_BYTES: usize = 7 * 16;
+pub(super) const QUAD_FACTORS: usize = 7;
 
 /// The WGSL of `kernel` for `model` (none: kernels that evaluate no model) and so many channels; 0 are the
 /// raw results of integrals that an outer sum goes on with.

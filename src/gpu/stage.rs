@@ -1,7 +1,7 @@
 //! The work of one lobe, uploaded: f64 factors rounded to the kernels' precision, as they lay them out.
 
 use super::baker::{Baker, count};
-use super::compose::{COARSE_NODES, Kernel, VALUE_WINDOW};
+use super::compose::{COARSE_NODES, Kernel, QUAD_FACTORS, VALUE_WINDOW};
 use crate::check::stride;
 use crate::error::{Error, Result};
 use crate::factor::Scale;
@@ -393,18 +393,24 @@ impl Upload<'_> {
 
     /// Azimuths of values by fours, as the kernel takes them, those of each φi in whole windows.
     fn quads(&self, values: &ValueWork) -> wgpu::Buffer {
-        let four = |four: &[Azimuth]| {
-            // The last one fills the last quad.
-            let of = |k: usize| &four[k.min(four.len() - 1)];
-            let at = |get: fn(&Azimuth) -> f64| [0, 1, 2, 3].map(|k| get(of(k)) as f32);
-            let frame = [at(|a| a.frame.cp), at(|a| a.frame.cm), at(|a| a.frame.sp), at(|a| a.frame.sm)];
-            let [cp, cm, sp, sm] = frame;
-            [at(|a| a.sin2), at(|a| a.cos2), at(|a| a.back), cp, cm, sp, sm]
-        };
-        let mut quads: Vec<[[f32; 4]; 7]> = Vec::new();
-        for azimuths in &values.frames {
-            quads.extend(azimuths.chunks(4).map(four));
-            quads.resize(quads.len().next_multiple_of(VALUE_WINDOW), [[0.0; 4]; 7]);
+        const FACTORS: [fn(&Azimuth) -> f64; QUAD_FACTORS] = [
+            |a| a.sin2,
+            |a| a.cos2,
+            |a| a.back,
+            |a| a.frame.cp,
+            |a| a.frame.cm,
+            |a| a.frame.sp,
+            |a| a.frame.sm,
+        ];
+        let mut quads: Vec<f32> = Vec::new();
+        for window in values.frames.iter().flat_map(|azimuths| azimuths.chunks(4 * VALUE_WINDOW)) {
+            for factor in FACTORS {
+                let filled = quads.len() + 4 * VALUE_WINDOW;
+                quads.extend(window.iter().map(|azimuth| factor(azimuth) as f32));
+                // The last one fills the last quad; of what is beyond nothing is read.
+                let last = quads.last().copied().unwrap_or_default();
+                quads.resize(filled, last);
+            }
         }
         self.baker.init(bytemuck::cast_slice(&quads), wgpu::BufferUsages::UNIFORM)
     }

@@ -278,12 +278,12 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
             coarse: SlopeMap {
                 part: coarse,
                 end: N::coarse_end,
-                integrand: |r, azimuth, mu_e, s| Self::integrand(N::coarse_map(r, s), azimuth, mu_e, s),
+                integrand: |r, azimuth, mu_e, s| Self::integrand(MapAt::Coarse(r), azimuth, mu_e, s),
             },
             fine: SlopeMap {
                 part: fine,
                 end: N::fine_end,
-                integrand: |r, azimuth, mu_e, s| Self::integrand(N::fine_map(r, s), azimuth, mu_e, s),
+                integrand: |r, azimuth, mu_e, s| Self::integrand(MapAt::Fine(r), azimuth, mu_e, s),
             },
             counts: Self::counts,
             branches: if F::POLYNOMIAL && M::SPREADS { N::BRANCHES } else { None },
@@ -297,7 +297,7 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
     }
 
     fn mirror_limit(mu: f64, s: &Setting) -> [f64; 2] {
-        F::fresnel(mu, 1.0 - mu, s).map(|f| f * M::mirror(mu))
+        times(F::fresnel(mu, 1.0 - mu, s), M::mirror(mu))
     }
 
     /// The NDF's error model is for correlated Smith and Schlick.
@@ -308,6 +308,34 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
 
     fn lobe(p: &Pair, a: &Azimuth, setting: &Setting) -> [f64; 2] {
         let h = Half::new(p, a);
+        let s = Facets::<N, M>::lobe(p, a, &h, setting);
+        times(F::fresnel(h.c, h.one_minus_c, setting), s)
+    }
+
+    fn integrand(map: MapAt, azimuth: [f64; 3], mu_e: f64, s: &Setting) -> [f64; 2] {
+        let [c, all] = Facets::<N, M>::integrand(map, azimuth, mu_e, s);
+        times(F::fresnel(c, 1.0 - c, s), all)
+    }
+}
+
+/// Not `map`, of which there would be one for each combination.
+fn times([a, b]: [f64; 2], s: f64) -> [f64; 2] {
+    [a * s, b * s]
+}
+
+/// What of a combination does not depend on its Fresnel term, by itself: it need not be compiled again for each.
+struct Facets<N, M>(PhantomData<(N, M)>);
+
+/// Which map, and where.
+enum MapAt {
+    Coarse(f64),
+    Fine(f64),
+}
+
+impl<N: Ndf, M: Masking> Facets<N, M> {
+    /// D G2 / (4 μi μe)
+    #[inline(never)]
+    fn lobe(p: &Pair, a: &Azimuth, h: &Half, setting: &Setting) -> f64 {
         let Frame { cp, cm, sp, sm } = a.frame;
         let axes = N::axes(setting);
         let with = |alpha: f64| Setting { alpha, ..*setting };
@@ -318,20 +346,23 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         let shared = M::visibility::<N>(&toward(p.mu_i, cp + cm, sp + sm), &toward(p.mu_e, cp - cm, sp - sm));
         let d = match N::STRETCHES {
             true => N::ndf(&h.stretched(p, a, axes), p.hz2, &with((axes[0] * axes[1]).sqrt())),
-            false => N::ndf(&h, p.hz2, setting),
+            false => N::ndf(h, p.hz2, setting),
         };
-        let s = d * M::of_normal(shared, p, &h);
-        F::fresnel(h.c, h.one_minus_c, setting).map(|f| f * s)
+        d * M::of_normal(shared, p, h)
     }
 
-    fn integrand(map: Map, [mu_c, t_max, t_max_inverse]: [f64; 3], mu_e: f64, s: &Setting) -> [f64; 2] {
-        let Map { p, m, weight } = map;
+    /// ωi·ωm, and the integrand without F.
+    #[inline(never)]
+    fn integrand(at: MapAt, [mu_c, t_max, t_max_inverse]: [f64; 3], mu_e: f64, s: &Setting) -> [f64; 2] {
+        let Map { p, m, weight } = match at {
+            MapAt::Coarse(r) => N::coarse_map(r, s),
+            MapAt::Fine(r) => N::fine_map(r, s),
+        };
         let projected = mu_e * m + mu_c * p; // ωe·ωm √y
         let y = m * m + p * p;
         let x = (t_max * m - p) * (p + t_max_inverse * m); // cos θi = μe x/y
         let all = 2.0 * x * projected * weight / M::masking::<N>(x, y, mu_e, s);
-        let c = (projected / y.sqrt()).clamp(0.0, 1.0);
-        F::fresnel(c, 1.0 - c, s).map(|f| f * all)
+        [(projected / y.sqrt()).clamp(0.0, 1.0), all]
     }
 }
 

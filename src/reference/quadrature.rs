@@ -38,14 +38,21 @@ const MAX_HALVINGS: usize = 400;
 /// The breaks ascend; put one wherever f has a kink or changes its scale. The result says if it did not
 /// converge, be it for want of halvings or because f is not finite somewhere.
 pub fn integrate(mut f: impl FnMut(f64) -> [f64; 2], breaks: &[f64], tolerance: f64) -> Estimate {
+    adapt(&mut f, breaks, tolerance)
+}
+
+/// An integrand, by pointer: there are sixty of them, and the rule need not be compiled for each.
+type Integrand<'a> = dyn FnMut(f64) -> [f64; 2] + 'a;
+
+fn adapt(f: &mut Integrand, breaks: &[f64], tolerance: f64) -> Estimate {
     let ends = |w: &[f64]| [w[0], w[1]];
-    let mut panels: Vec<Panel> = breaks.windows(2).map(ends).map(|[a, b]| Panel::new(&mut f, a, b)).collect();
+    let mut panels: Vec<Panel> = breaks.windows(2).map(ends).map(|[a, b]| Panel::new(f, a, b)).collect();
     for _ in 0..MAX_HALVINGS {
         let estimate = Estimate::of(&panels, tolerance);
         if estimate.converged || !estimate.error.is_finite() {
             return estimate;
         }
-        halve_the_worst(&mut panels, &mut f);
+        halve_the_worst(&mut panels, f);
     }
     Estimate::of(&panels, tolerance)
 }
@@ -56,7 +63,7 @@ pub fn even_breaks(start: f64, end: f64, longest: f64) -> Vec<f64> {
     (0..=count as usize).map(|k| start + (end - start) * (k as f64 / count)).collect()
 }
 
-fn halve_the_worst(panels: &mut Vec<Panel>, f: &mut impl FnMut(f64) -> [f64; 2]) {
+fn halve_the_worst(panels: &mut Vec<Panel>, f: &mut Integrand) {
     let worst = panels.iter().enumerate().max_by(|(_, a), (_, b)| a.error.total_cmp(&b.error));
     if let Some((index, &Panel { start, end, .. })) = worst {
         let middle = 0.5 * (start + end);
@@ -74,7 +81,7 @@ struct Panel {
 }
 
 impl Panel {
-    fn new(f: &mut impl FnMut(f64) -> [f64; 2], start: f64, end: f64) -> Self {
+    fn new(f: &mut Integrand, start: f64, end: f64) -> Self {
         let (centre, half) = (0.5 * (start + end), 0.5 * (end - start));
         let samples: [[f64; 2]; 15] = std::array::from_fn(|k| f(centre + half * signed_node(k)));
         let [a, b] = [0, 1].map(|channel| sums(|k| samples[k][channel], half));

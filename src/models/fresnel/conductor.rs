@@ -80,6 +80,7 @@ impl Fresnel for Conductor {
         exact(schlick, [re.hypot(im), (re + 2.0).hypot(im)], tolerance)
     }
 
+    #[inline(never)]
     fn fresnel(c: f64, x: f64, s: &Setting) -> [f64; 2] {
         let [e_re, e_im] = e(s.parameters[ETA], s.parameters[K]);
         let re = e_re + c * c;

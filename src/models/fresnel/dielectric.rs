@@ -56,6 +56,7 @@ impl Fresnel for Dielectric {
         exact(schlick, [e, e + 2.0], tolerance)
     }
 
+    #[inline(never)]
     fn fresnel(c: f64, x: f64, s: &Setting) -> [f64; 2] {
         let e = e(s.parameters[ETA]);
         let g = (e + c * c).sqrt();

@@ -64,6 +64,7 @@ impl Fresnel for F82 {
         if s.parameters[TINT] < 1.0 { schlick.more(1.25) } else { schlick }
     }
 
+    #[inline(never)]
     fn fresnel(c: f64, x: f64, s: &Setting) -> [f64; 2] {
         let [five, four] = dip(s.parameters[TINT]);
         let small = c.min(x);

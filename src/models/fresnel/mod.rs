@@ -52,7 +52,7 @@ pub(crate) trait Fresnel {
         0
     }
 
-    /// The components for c = ωi·ωm and x = 1 − c.
+    /// The components for c = ωi·ωm and x = 1 − c. Long ones are not inlined: there are hundreds of combinations.
     fn fresnel(c: f64, x: f64, s: &Setting) -> [f64; 2];
 }
 

@@ -127,6 +127,7 @@ impl Fresnel for ThinFilm {
         degree(s, tolerance)
     }
 
+    #[inline(never)]
     fn fresnel(c: f64, x: f64, s: &Setting) -> [f64; 2] {
         let [path, e, step] = film(&s.parameters);
         let n2 = 1.0 + e;

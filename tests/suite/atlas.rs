@@ -1,9 +1,7 @@
 //! Promises of the error atlas: f32 stays as near to f64 as it says, the same values come back when ωi and ωe
 //! are exchanged, and the input that is named as the worst gives the error that is named.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gonio::atlas::{self, Page, RECIPROCITY};
 use gonio::bake::{Evaluator, Unobserved};
 use gonio::models::MODELS;

@@ -1,9 +1,7 @@
 //! Promises of the thin film: the specification's numbers, a spectral integral done by force, limits, and what every
 //! Fresnel term promises.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gonio::axis::Variable::Mu;
 use gonio::bake::Evaluator;
 use gonio::check::Check;

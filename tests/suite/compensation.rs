@@ -2,9 +2,7 @@
 //! energy, what is reciprocal stays so, and values and integrals agree with the f64 reference, which has albedos of
 //! its own.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 
 use gonio::axis::Variable::{DeltaPhi, Mu, Roughness, ThetaE, ThetaI};
 use gonio::bake::Unobserved;

@@ -1,9 +1,7 @@
 //! Promises of streamed tables: the same bytes as in one piece, and a bake that was killed goes on where it
 //! was.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gonio::bake::{Baked, Evaluator, Observer, Options, Stages, Streaming, Unobserved, bake_set};
 use gonio::check::Check;
 use gonio::files::Format;
@@ -155,7 +153,7 @@ fn a_killed_bake_goes_on() {
     let recipe = recipe(folder.path(), RECIPE);
     let out = folder.path().join("out");
     let mut child = Command::new(env::current_exe().unwrap())
-        .args(["--exact", "a_bake_that_hangs", "--ignored", "--nocapture"])
+        .args(["--exact", "stream::a_bake_that_hangs", "--ignored", "--nocapture"])
         .env("GONIO_TEST_RECIPE", &recipe)
         .env("GONIO_TEST_OUT", &out)
         .env("GONIO_TEST_TILES", BEFORE.to_string())

@@ -1,9 +1,7 @@
 //! Promises of α → 0: integrals join the mirror's, values keep the exact peak down to α = 1e-6, and what is a
 //! delta is never returned as a number.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gonio::axis::Variable::{DeltaPhi, Mu, ThetaE, ThetaI};
 use gonio::check::Check;
 use gonio::plan::{Lobe, STORED_F32, TablePlan, VALUE_F32};

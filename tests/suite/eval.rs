@@ -1,12 +1,8 @@
 //! Promises of values at lists of directions: they are those of tables, they keep their digits near the
 //! mirror direction, and `gonio eval` carries them from file to file.
-#![cfg(feature = "cli")]
 
-mod common;
-#[path = "common/readers.rs"]
-mod readers;
-
-use common::*;
+use crate::common::readers;
+use crate::common::*;
 use gonio::axis::Variable::{DeltaPhi, ThetaE, ThetaI};
 use gonio::check::{Check, VALUE_FLOOR};
 use gonio::models::MODELS;

@@ -1,8 +1,6 @@
 //! Promises of the diffuse lobes: their limits, their closed forms, and all digits where two directions graze.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gonio::axis::Variable::{DeltaPhi, Mu, ThetaE, ThetaI};
 use gonio::bake::Evaluator;
 use gonio::check::Check;

@@ -1,9 +1,7 @@
 //! Promises of the exact Fresnel terms and of F82-tint: limits, published values, agreement with the reference over
 //! all of η, k and f82, alone under the ideal mirror, whose ρ_dh is F, and under GGX.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gonio::axis::Variable::Mu;
 use gonio::bake::Evaluator;
 use gonio::check::Check;

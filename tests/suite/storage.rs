@@ -1,12 +1,8 @@
 //! Promises of storage: values are rounded to the nearest and never clamped, the error between samples is
 //! what a reader meets, and the optimiser's table is smaller and better than the usual one.
-#![cfg(feature = "cli")]
 
-mod common;
-#[path = "common/readers.rs"]
-mod readers;
-
-use common::{device, listed, model};
+use crate::common::readers;
+use crate::common::{device, listed, model};
 use gonio::axis::{Axis, Mapping, Positions, Variable};
 use gonio::bake::{Evaluator, Stages, Unobserved, within_tolerance};
 use gonio::check::Check;
@@ -139,7 +135,7 @@ fn the_stated_maximum_bounds_what_a_reader_meets() {
         };
         let (rows, columns) = (table.axes[0].len(), table.axes[1].len());
         let mut largest: f64 = 0.0;
-        for (u, v) in common::golden(300, 0.1)
+        for (u, v) in crate::common::golden(300, 0.1)
             .into_iter()
             .zip((0..300).map(|k| (0.5 + k as f64 * 0.7548776662).fract()))
         {

@@ -1,9 +1,7 @@
 //! Promises of the other methods and of `gonio trade`: each converges to the reference at its rate, on the
 //! device as on the CPU path, and the measurement says what it did.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gonio::axis::{Axis, Mapping, Positions, Variable};
 use gonio::bake::{Evaluator, Unobserved};
 use gonio::gpu::{Kernel, compose, validate};

@@ -1,9 +1,7 @@
 //! Promises of our own models: kept over their whole ranges, what a format declares is there and bounded, and
 //! each worst input can be pasted into `gonio eval`.
 
-mod common;
-
-use common::device;
+use crate::common::device;
 use gonio::bake::Unobserved;
 use gonio::factor::Compensation;
 use gonio::models::MODELS;

@@ -1,8 +1,6 @@
 //! Promises of the distributions of normals: limits that they share, closed forms, and what they are known to break.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gonio::axis::Variable::Mu;
 use gonio::check::Check;
 use gonio::plan::INTEGRAL_F32;

@@ -1,9 +1,7 @@
 //! Promises of BRDF values: they agree with the f64 reference at every input, they are reciprocal, and
 //! the specular peak survives f32.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gonio::axis::Variable::{DeltaPhi, ThetaE, ThetaI};
 
 use gonio::check::Check;

@@ -1,9 +1,7 @@
 //! Promises to an engine that embeds gonio: what it records into its own encoder, on its own device, is
 //! what the headless bake reads back, as a buffer and as a texture of every format.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gonio::axis::{Axis, Mapping, Positions, Variable};
 use gonio::bake::Evaluator;
 use gonio::check::Check;

@@ -1,9 +1,7 @@
 //! Promises of microfacet models put together from other terms than the defaults: the same as of every model,
 //! for each combination; those that tell azimuths from each other are in `anisotropy.rs`.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gonio::axis::Variable::{DeltaPhi, Mu, ThetaE, ThetaI};
 use gonio::check::Check;
 use gonio::factor::Compensation;
@@ -60,15 +58,15 @@ fn values_agree_with_the_reference_and_are_reciprocal() {
 /// Integrals at the extremes and between: α from 0 to 1, μ from 2⁻²⁴ to 1.
 #[test]
 fn integrals_agree_with_the_reference() {
-    let mut roughness = EXTREME_ROUGHNESS.to_vec();
-    roughness.extend([0.0, 3e-3, 0.2, 0.5]);
-    let mut mus = vec![1e-7, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0];
-    mus.extend(golden(6, 0.2));
+    let roughness = [0.0, 1e-3, 3e-2, 0.1, 0.3, 0.5, 0.7, 1.0];
+    let mut mus = vec![1e-7, 1e-4, 1e-2, 0.1, 1.0];
+    mus.extend(golden(3, 0.2));
     for model in bounded() {
+        // ρ_dh is the split sum's by another way to ask, and half a second of the reference's work is one ρ_hh.
         let plans = [
             basis(&SPLIT_SUM, model, &roughness, vec![listed(Mu, &mus)]),
-            basis(&RHO_DH, model, &roughness, vec![listed(ThetaI, &extreme_thetas())]),
-            basis(&RHO_HH, model, &roughness[3..8], vec![]),
+            basis(&RHO_DH, model, &[0.1, 0.7], vec![listed(ThetaI, &extreme_thetas())]),
+            basis(&RHO_HH, model, &[0.1, 0.7], vec![]),
         ];
         for tried in plans.map(Tried::new) {
             for evaluator in evaluators() {
@@ -86,7 +84,7 @@ fn integrals_meet_every_tolerance() {
     for model in bounded() {
         for plan in [
             basis(&SPLIT_SUM, model, &roughness, vec![listed(Mu, &mus)]),
-            basis(&RHO_HH, model, &roughness, vec![]),
+            basis(&RHO_HH, model, &[0.15, 0.6], vec![]),
         ] {
             let tried = Tried::new(plan);
             for tolerance in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8] {
@@ -100,9 +98,9 @@ fn integrals_meet_every_tolerance() {
 #[test]
 fn integrals_conserve_energy_and_meet_closed_forms() {
     for model in bounded() {
-        let roughness: Vec<_> = (0..=20).map(|k| k as f64 / 20.0).collect();
+        let roughness: Vec<_> = (0..=10).map(|k| k as f64 / 10.0).collect();
         let table =
-            bake(device(), &basis(&SPLIT_SUM, model, &roughness, vec![axis(Mu, 64)]), Check::Sample(0));
+            bake(device(), &basis(&SPLIT_SUM, model, &roughness, vec![axis(Mu, 32)]), Check::Sample(0));
         for texel in 0..table.texels() {
             let rho: f64 = table.texel(texel).into_iter().sum();
             assert!((0.0..=model.rho_bound + INTEGRAL_F32).contains(&rho), "{}: {rho}", model.name);

@@ -1,10 +1,7 @@
 //! Promises of `gonio plot` and `gonio gallery`: pictures that decode and say what they show, pixels that are
 //! the physics they stand for, and files all or none.
-#![cfg(feature = "cli")]
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use data_url::DataUrl;
 use gonio::axis::{Axis, Variable};
 use gonio::bake::Evaluator;

@@ -1,9 +1,7 @@
 //! Promises about drivers: what the canary says of one is what shaders find on it, and no table is ever short of what a
 //! driver left out of a loop.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gonio::axis::Variable;
 use gonio::bake::{Evaluator, Stages, Unobserved};
 use gonio::check::Check;

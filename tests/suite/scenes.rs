@@ -1,9 +1,7 @@
 //! Reading scenes and recipes: the ranges are those of the file, what is missing widens them, and
 //! whatever is wrong gives an error that names the file and the place.
 
-#![cfg(feature = "scene")]
-
-#[path = "../examples/make_demo_scene.rs"]
+#[path = "../../examples/make_demo_scene.rs"]
 #[allow(dead_code, missing_docs)]
 mod make_demo_scene;
 
@@ -389,7 +387,7 @@ fn damaged_bytes_never_panic() {
         }),
     );
     let whole = glb(&root, &PNG);
-    let recipe = include_bytes!("../assets/demo/recipe.toml");
+    let recipe = include_bytes!("../../assets/demo/recipe.toml");
     let mut state = 1_u64;
     let mut random = |below: usize| {
         // Knuth's MMIX generator; the high bits are the good ones.

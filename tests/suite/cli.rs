@@ -1,10 +1,7 @@
 //! Promises of the command line: what it writes, what it prints and where, its exit codes, and that
 //! whatever fails leaves the folder as it was.
-#![cfg(feature = "cli")]
 
-#[path = "common/readers.rs"]
-mod readers;
-
+use crate::common::readers;
 use gonio::files::{sha256, verify};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,10 +1,7 @@
 //! Promises of the table files: they say what they are, read back bit for bit in independent readers, and
 //! a set of them is replaced as a whole or not at all.
-#![cfg(feature = "files")]
 
-#[path = "common/readers.rs"]
-mod readers;
-
+use crate::common::readers;
 use gonio::axis::{Axis, Mapping, Positions, Variable};
 use gonio::files::{Format, Provenance, TableEntry, TableSet, read_manifest, verify};
 use gonio::storage::Storage;

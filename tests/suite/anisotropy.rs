@@ -1,8 +1,6 @@
 //! Promises of models that tell azimuths from each other, and of tables over all four angles.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gonio::axis::Variable::{Mu, PhiE, PhiI, ThetaE, ThetaI};
 use gonio::bake::{Evaluator, Unobserved};
 use gonio::check::Check;

@@ -1,9 +1,7 @@
 //! Promises of the plan: only what the scene requires, in tables and in shaders; and it is plain data,
 //! made and compared without a device.
 
-mod common;
-
-use common::model;
+use crate::common::model;
 use gonio::axis::{Axis, Mapping, Positions, Variable};
 use gonio::factor::Compensation;
 use gonio::gpu::{Kernel, compose, validate};

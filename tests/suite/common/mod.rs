@@ -1,5 +1,7 @@
 //! What the tests share: one device for the process, and short ways to tables.
-#![allow(dead_code)] // each test file uses its own part
+
+#[cfg(feature = "files")]
+pub mod readers;
 
 use gonio::axis::{Axis, Mapping, Positions, Variable};
 use gonio::bake::{Evaluator, Stages, Unobserved};

@@ -1,9 +1,7 @@
 //! Promises of `gonio check`: each planted fault is caught and its input named, clean models pass, and a file
 //! that cannot be checked is refused where it is wrong.
 
-mod common;
-
-use common::device;
+use crate::common::device;
 use gonio::bake::{Evaluator, Unobserved};
 use gonio::gpu::{Device, UserFunction, UserShader, directions};
 use gonio::points::Angles;

@@ -1,11 +1,7 @@
 //! glTF's material extensions: the material's f is the formula of each extension's text, evaluated here in f64 from unit
 //! vectors, with nothing of the crate's.
 
-#![cfg(feature = "scene")]
-
-mod common;
-
-use common::*;
+use crate::common::*;
 
 use gonio::bake::Unobserved;
 use gonio::plan::{Plan, Selection};

@@ -1,8 +1,6 @@
 //! Promises of the classics: their limits, their closed forms, what they are in terms of others, and their integrals.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gonio::axis::Variable::{DeltaPhi, Mu, ThetaE, ThetaI};
 use gonio::check::Check;
 use gonio::models::Model;

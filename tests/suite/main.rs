@@ -1,0 +1,38 @@
+//! The suite: one file a promise. One program, as the device is one for all of them, and linking is not for each.
+
+mod common;
+
+mod anisotropy;
+mod atlas;
+mod canary;
+mod check;
+mod check_targets;
+mod classics;
+#[cfg(feature = "cli")]
+mod cli;
+mod compensation;
+mod diffuse;
+mod embed;
+#[cfg(feature = "cli")]
+mod eval;
+#[cfg(feature = "scene")]
+mod extensions;
+#[cfg(feature = "files")]
+mod files;
+mod fresnel;
+mod hostile;
+mod integrals;
+mod mirror_limit;
+mod ndfs;
+mod parts;
+mod plans;
+#[cfg(feature = "cli")]
+mod plot;
+#[cfg(feature = "scene")]
+mod scenes;
+#[cfg(feature = "cli")]
+mod storage;
+mod stream;
+mod thin_film;
+mod trade;
+mod values;
