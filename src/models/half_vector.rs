@@ -43,12 +43,29 @@ pub(crate) struct Kinks {
     pub turn: fn(c: f64) -> Option<f64>,
     /// Whether it follows the horizon, which turns within μ of cos φ = 0, all the way.
     pub is_sharp: bool,
+    /// The same for rules that go by the direction, not by the normal; what has `breaks` says it.
+    pub of_directions: Option<DirectionKinks>,
+}
+
+/// Where a function of both directions is not smooth, beside where their cosines are equal.
+#[derive(Clone, Copy)]
+pub(crate) struct DirectionKinks {
+    /// sin²(δφ/2) at which it has a kink: there is none unless that is between 0 and 1.
+    pub sin2: fn(&Pair) -> f64,
+    /// Elevations of ωe, rad, at which that begins or ends to be in between, for the elevation of ωi.
+    pub elevations: fn(elevation: f64) -> [f64; 4],
 }
 
 impl Kinks {
     /// Of what is smooth.
-    pub const NONE: Self =
-        Self { breaks: |_| Vec::new(), most: 0, meet: None, turn: |_| None, is_sharp: false };
+    pub const NONE: Self = Self {
+        breaks: |_| Vec::new(),
+        most: 0,
+        meet: None,
+        turn: |_| None,
+        is_sharp: false,
+        of_directions: None,
+    };
 
     /// Of what has the smaller of both cosines in it: they are the same at tan θm = c.
     pub const OF_EQUAL_COSINES: Self = Self { breaks: |c| vec![c], most: 1, is_sharp: true, ..Self::NONE };

@@ -269,7 +269,12 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
             let cost = |mu| panels * N::most::<M>(Self::counts(mu, s, tolerance));
             [1.0, 0.3, 0.1, 0.03, 1e-2, 1e-3, 1e-4, MU_MIN].map(cost).into_iter().max().unwrap_or(1)
         },
-        mean: if N::MEAN.is_none() && M::KINKS.most > 0 { Some(half_vector::mean) } else { N::MEAN },
+        mean: match (N::MEANS, M::KINKS.most > 0) {
+            (Some([smooth, _]), false) => Some(smooth),
+            (Some([_, kinked]), true) => Some(kinked),
+            (None, false) => None,
+            (None, true) => Some(half_vector::mean),
+        },
         limit: |mu, s| (N::IS_MIRROR_AT_0 && N::axes(s) == [0.0; 2]).then(|| Self::mirror_limit(mu, s)),
     };
 

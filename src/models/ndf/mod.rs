@@ -86,8 +86,9 @@ pub(crate) trait Ndf: Sized {
     fn most<M: Masking>(counts: [SlopeCounts; 2]) -> usize {
         half_vector::most(&M::KINKS, counts)
     }
-    /// μ and weights of the mean ρ_hh, where its own rule of all models does not see what is in ρ.
-    const MEAN: Option<fn(tolerance: f64) -> Vec<Node>> = None;
+    /// μ and weights of the mean ρ_hh, where the rule of all models does not see what is in ρ: with a smooth masking, and
+    /// with one that has kinks.
+    const MEANS: Option<[fn(tolerance: f64) -> Vec<Node>; 2]> = None;
 
     /// r at which tan θm reaches `t_max`, and the map there: of one that has a map.
     fn fine_end(_t_max: f64, _: &Setting) -> f64 {
