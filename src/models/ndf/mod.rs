@@ -9,6 +9,7 @@ pub(crate) mod ggx_coarse;
 pub(crate) mod ggx_fine;
 pub(crate) mod ggx_nodes;
 pub(crate) mod ggx_samples;
+pub(crate) mod gtr;
 pub(crate) mod stretched;
 
 use super::fresnel::Fresnel;
@@ -52,6 +53,11 @@ pub(crate) trait Ndf: Sized {
     /// The relative error of its values in f32 at a setting.
     fn value_f32(_s: &Setting) -> f64 {
         Self::VALUE_F32
+    }
+
+    /// What ρ_dh reaches at most at a setting, where that is less than with the worst.
+    fn rho_most(_s: &Setting) -> f64 {
+        f64::INFINITY
     }
 
     /// α along the tangent and along the bitangent.
