@@ -16,7 +16,7 @@ impl Ndf for Gtr {
         if alpha == 1.0 {
             return 1.0 / PI;
         }
-        let log = -2.0 * (alpha - 1.0).ln_1p();
+        let log = -2.0 * if alpha < 0.5 { alpha.ln() } else { (alpha - 1.0).ln_1p() };
         let g = (gamma - 1.0) * log;
         let share = if g == 0.0 { 1.0 } else { g / g.exp_m1() };
         let c = (1.0 - alpha) * (1.0 + alpha) / (PI * log) * share;
