@@ -478,7 +478,9 @@ impl TablePlan {
         let of = |lobe: &Lobe| {
             let stretched = (self.lobe_f32(lobe) / lobe.model.value_f32 / 20.0).max(1.0);
             let factors: f64 = lobe.factors.iter().map(Factor::rho_bound).product();
-            lobe.model.integral_f32() * stretched * factors.max(1.0)
+            let settings = lobe.settings(&self.alphas(lobe));
+            let least = settings.iter().map(|s| lobe.model.integral_f32_at(s)).fold(INTEGRAL_F32, f64::max);
+            least * stretched * factors.max(1.0)
         };
         self.lobes.iter().map(of).fold(INTEGRAL_F32, f64::max)
     }

@@ -268,9 +268,10 @@ fn twins(lobes: &[Lobe], setting: &[At], (pair, azimuth): &(Pair, Azimuth), out:
 }
 
 /// A measure of the shape, if it has values.
-fn in_range(&Shape { name, least, most, .. }: &Shape, alpha: f64) -> Result<f64> {
+fn in_range(shape: &Shape, alpha: f64) -> Result<f64> {
+    let &Shape { name, least, most, .. } = shape;
     if (least..=most).contains(&alpha) {
-        return Ok(alpha);
+        return Ok(shape.taken(alpha));
     }
     let delta = if least > 0.0 { ": below it is a delta, without values" } else { "" };
     Err(Error::input(format!("{name} = {alpha} is outside [{least:e}, {most}]{delta}")))

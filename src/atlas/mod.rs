@@ -30,7 +30,7 @@ pub use write::{to_json, write};
 
 use crate::bake::{Evaluator, Observer};
 use crate::error::{Error, Result};
-use crate::models::{Model, Shape};
+use crate::models::Model;
 use crate::plan::{Lobe, VALUE_F32};
 use crate::points::{Angles, Points};
 use crate::setting::Setting;
@@ -151,9 +151,9 @@ pub fn measure_model(
     // A model without a shape has the same values at each; wide lobes have no decades.
     let alphas = match model.shape {
         None => vec![1.0],
-        Some(Shape { least, most, .. }) => {
-            let scaled = alphas().into_iter().map(|alpha| most * alpha);
-            scaled.filter(|&alpha| alpha >= least).collect()
+        Some(shape) => {
+            let scaled = alphas().into_iter().map(|alpha| shape.most * alpha);
+            scaled.filter(|&alpha| alpha >= shape.least && alpha == shape.taken(alpha)).collect()
         }
     };
     let angles = directions::everywhere((budget as usize / (alphas.len() * channels)).max(1));

@@ -21,7 +21,13 @@ pub(super) struct Normals<'a> {
     pub end: &'a dyn Fn(f64) -> f64,
     pub at: &'a dyn Fn(f64) -> Normal,
     pub kinks: Kinks,
+    /// What turns before the horizon.
+    pub turn: Option<HorizonTurn>,
 }
+
+/// How far in r before the horizon something turns: directions crowd there.
+#[derive(Clone, Copy)]
+pub(super) struct HorizonTurn(pub f64);
 
 /// The normals at r: tan θm = p/m, and their solid angle over dr dφ/2π.
 pub(super) struct Normal {
@@ -43,12 +49,29 @@ pub(crate) struct Kinks {
     pub turn: fn(c: f64) -> Option<f64>,
     /// Whether it follows the horizon, which turns within μ of cos φ = 0, all the way.
     pub is_sharp: bool,
+    /// The same for rules that go by the direction, not by the normal; what has `breaks` says it.
+    pub of_directions: Option<DirectionKinks>,
+}
+
+/// Where a function of both directions is not smooth, beside where their cosines are equal.
+#[derive(Clone, Copy)]
+pub(crate) struct DirectionKinks {
+    /// sin²(δφ/2) at which it has a kink: there is none unless that is between 0 and 1.
+    pub sin2: fn(&Pair) -> f64,
+    /// Elevations of ωe, rad, at which that begins or ends to be in between, for the elevation of ωi.
+    pub elevations: fn(elevation: f64) -> [f64; 4],
 }
 
 impl Kinks {
     /// Of what is smooth.
-    pub const NONE: Self =
-        Self { breaks: |_| Vec::new(), most: 0, meet: None, turn: |_| None, is_sharp: false };
+    pub const NONE: Self = Self {
+        breaks: |_| Vec::new(),
+        most: 0,
+        meet: None,
+        turn: |_| None,
+        is_sharp: false,
+        of_directions: None,
+    };
 
     /// Of what has the smaller of both cosines in it: they are the same at tan θm = c.
     pub const OF_EQUAL_COSINES: Self = Self { breaks: |c| vec![c], most: 1, is_sharp: true, ..Self::NONE };
@@ -77,10 +100,21 @@ pub(super) fn samples<N: Ndf, M: Masking>(
     counts: [SlopeCounts; 2],
     tolerance: f64,
 ) -> Vec<Sample> {
+    samples_with::<N, M>(fixed, s, counts, tolerance, None)
+}
+
+/// The same where something turns before the horizon.
+pub(super) fn samples_with<N: Ndf, M: Masking>(
+    fixed: &Fixed,
+    s: &Setting,
+    counts: [SlopeCounts; 2],
+    tolerance: f64,
+    turn: Option<HorizonTurn>,
+) -> Vec<Sample> {
     let fine = is_fine(tolerance);
     let at = |r| normal::<N>(if fine { N::fine_map(r, s) } else { N::coarse_map(r, s) }, s);
     let end = |t| if fine { N::fine_end(t, s) } else { N::coarse_end(t, s) };
-    directions(fixed, counts, tolerance, &Normals { end: &end, at: &at, kinks: M::KINKS })
+    directions(fixed, counts, tolerance, &Normals { end: &end, at: &at, kinks: M::KINKS, turn })
 }
 
 /// D cos θm dωm = m weight dr dφ/2π
@@ -137,14 +171,28 @@ fn along(
     // scale that holds less than the tolerance is not worth nodes.
     let least = 0.1 * tolerance.sqrt();
     let scale = (kinks.turn)(c).map(|t| (normals.end)(t).max(least));
-    for panel in ends.windows(2) {
+    for (k, panel) in ends.windows(2).enumerate() {
         let graded = |r: f64| scale.map_or(r, |scale| (r / scale).asinh());
-        let (start, width) = (graded(panel[0]), graded(panel[1]) - graded(panel[0]));
-        for node in nodes {
+        let is_last = k + 2 == ends.len();
+        // The last of r before the horizon is a panel of its own, r = end − turn sinh x, if something turns there.
+        let turn = normals.turn.filter(|turn| is_last && turn.0 < 0.5 && panel[1] - panel[0] > 1.5);
+        let end = if turn.is_some() { panel[1] - 1.0 } else { panel[1] };
+        let (start, width) = (graded(panel[0]), graded(end) - graded(panel[0]));
+        let inner = nodes.iter().map(|node| {
             let x = start + width * node.x;
             let (r, slope) = scale.map_or((x, 1.0), |scale| (scale * x.sinh(), scale * x.cosh()));
+            (r, slope * width * node.weight)
+        });
+        let outer = turn.into_iter().flat_map(|HorizonTurn(turn)| {
+            let reach = (1.0 / turn).asinh();
+            nodes.iter().map(move |node| {
+                let x = reach * node.x;
+                (panel[1] - turn * x.sinh(), turn * x.cosh() * reach * node.weight)
+            })
+        });
+        for (r, dr) in inner.chain(outer) {
             let Normal { p, m, solid_angle } = (normals.at)(r);
-            let solid_angle = solid_angle * slope * width * node.weight * azimuth;
+            let solid_angle = solid_angle * dr * azimuth;
             // ωe = 2 (ωi·ωm) ωm − ωi
             let y = m * m + p * p;
             let root = y.sqrt();

@@ -15,7 +15,8 @@ use super::masking::{
     smith_separable::SmithSeparable, v_cavity::VCavity,
 };
 use super::ndf::{
-    Map, Ndf, beckmann::Beckmann, blinn_phong::BlinnPhong, charlie::Charlie, ggx::Ggx, stretched::Stretched,
+    Map, Ndf, beckmann::Beckmann, blinn_phong::BlinnPhong, charlie::Charlie, ggx::Ggx, gtr::Gtr,
+    stretched::Stretched,
 };
 use super::{
     Integral, Metal, Model, Parameter, Part, Sampling, SlopeCounts, SlopeMap, Slopes, Term, mirror, part,
@@ -43,6 +44,8 @@ pub struct Microfacet {
     pub(crate) refused: fn(&Parameters) -> Option<&'static str>,
     /// The relative error of its values in f32.
     pub(crate) value_f32: fn(&Setting) -> f64,
+    /// What ρ_dh reaches at most at a setting, where that is less than with the worst.
+    pub(crate) rho_most: fn(&Setting) -> f64,
     /// The error of its integrals in f32, relative to the most they reach.
     pub(crate) integral_f32: f64,
     /// f below which f32 has lost digits to underflow, sr⁻¹, where that is earlier than of most.
@@ -79,7 +82,7 @@ macro_rules! parts {
 }
 
 parts! {
-    ndfs: Ggx, Beckmann, Stretched<Ggx>, Stretched<Beckmann>, BlinnPhong, Charlie;
+    ndfs: Ggx, Beckmann, Stretched<Ggx>, Stretched<Beckmann>, Gtr, BlinnPhong, Charlie;
     maskings: SmithCorrelated, SmithSeparable, SchlickGgx, SchlickGgxDirect, VCavity, Kelemen, AshikhminNeubelt, Unmasked;
     fresnels: Schlick, Constant, Dielectric, Conductor, F82, ThinFilm;
 }
@@ -96,6 +99,13 @@ pub(super) static BECKMANN: Model = Model {
     summary: "Beckmann microfacets, height-correlated Smith, Schlick: f = F0·A + F90·B",
     source: "Walter et al. 2007, eq. 20 and 25; Heitz 2014, eq. 99; Schlick 1994, eq. 15",
     ..Made::<Beckmann, SmithCorrelated, Schlick>::MODEL
+};
+
+/// GTR with the defaults.
+pub(super) static GTR: Model = Model {
+    summary: "generalised Trowbridge–Reitz microfacets, gamma = 1 Disney's clearcoat: f = F0·A + F90·B",
+    parameters: Gtr::PARAMETERS,
+    ..Made::<Gtr, SmithCorrelated, Schlick>::MODEL
 };
 
 /// Blinn–Phong with the defaults.
@@ -233,6 +243,7 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         metals: F::METALS,
         refused: F::refused,
         value_f32: |s| N::value_f32(s) + F::VALUE_F32,
+        rho_most: |s| N::rho_most(s) * F::BOUND,
         integral_f32: N::INTEGRAL_F32,
         faint: N::FAINT,
         mean_nodes: F::mean_nodes,
@@ -269,7 +280,12 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
             let cost = |mu| panels * N::most::<M>(Self::counts(mu, s, tolerance));
             [1.0, 0.3, 0.1, 0.03, 1e-2, 1e-3, 1e-4, MU_MIN].map(cost).into_iter().max().unwrap_or(1)
         },
-        mean: if N::MEAN.is_none() && M::KINKS.most > 0 { Some(half_vector::mean) } else { N::MEAN },
+        mean: match (N::MEANS, M::KINKS.most > 0) {
+            (Some([smooth, _]), false) => Some(smooth),
+            (Some([_, kinked]), true) => Some(kinked),
+            (None, false) => None,
+            (None, true) => Some(half_vector::mean),
+        },
         limit: |mu, s| (N::IS_MIRROR_AT_0 && N::axes(s) == [0.0; 2]).then(|| Self::mirror_limit(mu, s)),
     };
 
@@ -399,7 +415,7 @@ mod tests {
     /// Names are keys of pipelines, words of recipes and parts of file names.
     #[test]
     fn every_combination_has_a_name_of_its_own() {
-        let defaults = [&GGX, &BECKMANN, &BLINN_PHONG, &CHARLIE];
+        let defaults = [&GGX, &BECKMANN, &GTR, &BLINN_PHONG, &CHARLIE];
         // And two that are stretched, which are no defaults.
         assert_eq!(MICROFACETS.len(), (defaults.len() + 2) * MASKINGS.len() * FRESNELS.len());
         let names: Vec<_> = models::all().map(|model| model.name).collect();

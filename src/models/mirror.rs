@@ -53,6 +53,7 @@ impl<F: Fresnel> Made<F> {
         mean_nodes: F::mean_nodes,
         faint: None,
         value_f32: |_| crate::plan::VALUE_F32,
+        rho_most: |_| f64::INFINITY,
         integral_f32: crate::plan::INTEGRAL_F32,
     };
     const PARTS: [Part; 2] = [F::TERM.part, TERM.part];

@@ -208,6 +208,7 @@ models! {
     diffuse::frostbite::MODEL,
     microfacet::GGX,
     microfacet::BECKMANN,
+    microfacet::GTR,
     microfacet::BLINN_PHONG,
     microfacet::CHARLIE,
     classic::ward::MODEL,
@@ -350,6 +351,15 @@ impl Model {
     pub fn integral_f32(&self) -> f64 {
         let relative = self.microfacet.map_or(INTEGRAL_F32, |made| made.integral_f32);
         relative * if self.rho_bound.is_finite() { self.rho_bound.max(1.0) } else { 1.0 }
+    }
+
+    /// The same of its integrals at a setting.
+    pub(crate) fn integral_f32_at(&self, s: &Setting) -> f64 {
+        let most = self.microfacet.map_or(f64::INFINITY, |made| (made.rho_most)(s));
+        if most < self.rho_bound && self.rho_bound.is_finite() {
+            return self.integral_f32() * most.max(1.0) / self.rho_bound.max(1.0);
+        }
+        self.integral_f32()
     }
 
     /// f below which f32 has lost digits to underflow, sr⁻¹, where that is earlier than of most.

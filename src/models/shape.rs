@@ -1,6 +1,7 @@
 //! What models take beside the weights of their components: a roughness, and numbers of their own.
 
 use super::ALPHA_MIN_VALUE;
+use super::ndf::gtr::ALPHA_LEAST;
 use std::f64::consts::FRAC_PI_2;
 
 /// How rough a lobe is: every model takes a perceptual roughness in [0, 1], and evaluates its own measure of it.
@@ -20,6 +21,8 @@ pub struct Shape {
     power: i32,
     /// Whether it may differ along the tangent and the bitangent, so that f depends on both azimuths.
     pub anisotropic: bool,
+    /// The measure that is taken below it.
+    floor: f64,
     /// Whether it is a share σ whose rest 1 − σ matters as much: shaders get σ/(1 − σ).
     odds: bool,
 }
@@ -51,6 +54,7 @@ impl Shape {
         least: ALPHA_MIN_VALUE,
         power: 2,
         anisotropic: false,
+        floor: 0.0,
         odds: false,
     };
 
@@ -64,6 +68,14 @@ impl Shape {
         ..Self::ALPHA
     };
 
+    /// α = roughness², at least Disney's 1/1000, so that all of them have values.
+    pub(crate) const GTR: Self = Self {
+        summary: "the slope of the microfacets, alpha = roughness², at least 0.001",
+        least: 0.0,
+        floor: ALPHA_LEAST,
+        ..Self::ALPHA
+    };
+
     /// The roughness as it is.
     pub const ROUGHNESS: Self = Self {
         name: "roughness",
@@ -73,6 +85,7 @@ impl Shape {
         least: 0.0,
         power: 1,
         anisotropic: false,
+        floor: 0.0,
         odds: false,
     };
 
@@ -85,6 +98,7 @@ impl Shape {
         least: 0.0,
         power: 1,
         anisotropic: false,
+        floor: 0.0,
         odds: false,
     };
 
@@ -93,7 +107,12 @@ impl Shape {
 
     /// The model's own measure of a roughness.
     pub fn measure(&self, roughness: f64) -> f64 {
-        self.most * roughness.powi(self.power)
+        self.taken(self.most * roughness.powi(self.power))
+    }
+
+    /// What is taken for a measure: no less than the floor.
+    pub(crate) fn taken(&self, measure: f64) -> f64 {
+        measure.max(self.floor)
     }
 
     /// What shaders get of a measure: it, or its odds up to 1e30, beyond which f does not tell them from infinite.

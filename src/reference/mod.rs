@@ -56,7 +56,9 @@ pub use microfacet::GGX;
 pub(crate) use microfacet::Microfacet;
 pub use mirror::MIRROR;
 pub(crate) use mirror::Mirror;
-pub(crate) use ndf::{Ndf, beckmann::Beckmann, blinn_phong::BlinnPhong, charlie::Charlie, ggx::Ggx};
+pub(crate) use ndf::{
+    Ndf, beckmann::Beckmann, blinn_phong::BlinnPhong, charlie::Charlie, ggx::Ggx, gtr::Gtr,
+};
 
 /// The f64 reference of a model.
 ///

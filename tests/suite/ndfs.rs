@@ -1,14 +1,23 @@
 //! Promises of the distributions of normals: limits that they share, closed forms, and what they are known to break.
 
 use crate::common::*;
-use gonio::axis::Variable::Mu;
+use gonio::axis::Variable::{DeltaPhi, Mu, ThetaE, ThetaI};
 use gonio::check::Check;
 use gonio::plan::INTEGRAL_F32;
-use gonio::quantity::SPLIT_SUM;
+use gonio::quantity::{BRDF, RHO_DH, RHO_HH, SPLIT_SUM};
 use gonio::reference::{Angles, MIN_MU};
+use gonio::setting::Setting;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-const NEW: [&str; 2] = ["blinn-phong", "charlie"];
+/// Names and γ.
+const NEW: [(&str, f64); 6] =
+    [("gtr", 1.0), ("gtr", 1.5), ("gtr", 4.0), ("gtr", 10.0), ("blinn-phong", 0.0), ("charlie", 0.0)];
+
+fn with_gamma(alpha: f64, gamma: f64) -> Setting {
+    let mut setting = Setting::from(alpha);
+    setting.parameters[0] = gamma;
+    setting
+}
 
 fn directions() -> Vec<Angles> {
     let mut thetas = extreme_thetas();
@@ -23,6 +32,80 @@ fn directions() -> Vec<Angles> {
 
 fn assert_near(a: f64, b: f64, relative: f64, what: &dyn std::fmt::Debug) {
     assert!((a - b).abs() <= relative * a.abs().max(b.abs()) + 1e-300, "{a} is not {b}: {what:?}");
+}
+
+/// γ = 2 is GGX, α = 1 the same for every γ, and γ → 1 goes over into Disney's logarithm.
+#[test]
+fn gtr_has_the_limits_of_its_exponent() {
+    let [gtr, ggx] = ["gtr", "ggx"].map(|name| model(name).reference.unwrap());
+    for angles in directions() {
+        let value = |alpha: f64, gamma: f64| gtr.brdf(&angles, &with_gamma(alpha, gamma)).unwrap()[0];
+        for alpha in [1e-6, 1e-3, 0.1, 0.7, 1.0] {
+            let exact = ggx.brdf(&angles, &alpha.into()).unwrap()[0];
+            assert_near(value(alpha, 2.0), exact, 1e-11, &(angles, alpha));
+            assert_near(value(alpha, 1.0 + 1e-9), value(alpha, 1.0), 1e-6, &(angles, alpha));
+        }
+        assert_near(value(1.0, 4.0), value(1.0, 1.0), 1e-12, &angles);
+        assert_near(value(1.0 - 1e-9, 4.0), value(1.0, 4.0), 1e-7, &angles);
+    }
+}
+
+/// Below Disney's least α nothing changes.
+#[test]
+fn gtr_takes_no_less_than_its_least_alpha() {
+    let gtr = model("gtr");
+    assert_eq!(gtr.measure(0.0), 1e-3);
+    assert_eq!(gtr.measure(0.5), 0.25);
+    let plan = basis(&SPLIT_SUM, gtr, &[0.0, 0.001f64.sqrt()], vec![listed(Mu, &[1e-3, 0.1, 0.5, 1.0])]);
+    for evaluator in evaluators() {
+        let table = bake(evaluator, &plan, Check::All);
+        let values: Vec<_> = table.values.iter().collect();
+        let (none, least) = values.split_at(values.len() / 2);
+        assert_eq!(none, least);
+    }
+}
+
+/// Values at γ of every kind, within the budget that stands beside the NDF.
+#[test]
+fn values_agree_with_the_reference_for_every_gamma() {
+    let mut thetas = extreme_thetas();
+    thetas.extend(golden(6, 0.1).iter().map(|u| u * FRAC_PI_2));
+    let gtr = model("gtr");
+    for gamma in [1.0, 1.0 + 1e-7, 1.3, 2.0, 3.7, 10.0] {
+        let axes =
+            vec![listed(ThetaI, &thetas), listed(ThetaE, &thetas), listed(DeltaPhi, &[0.0, 1e-3, 1.0, PI])];
+        let mut plan = basis(&BRDF, gtr, &EXTREME_ROUGHNESS, axes);
+        plan.lobes[0].parameters[0] = gamma;
+        for (evaluator, budget) in evaluators().into_iter().zip(value_budgets(gtr)) {
+            let worst = bake(evaluator, &plan, Check::All).error.measured_max.unwrap();
+            println!("γ = {gamma}: {worst:.1e} of {budget:.1e}");
+            assert!(worst <= budget, "γ = {gamma}: {worst} of {budget}");
+        }
+    }
+}
+
+/// Every tolerance is met at every γ, by the arithmetic that the plan chooses: where ρ is in the hundreds, f32 has no 1e-6.
+#[test]
+fn integrals_meet_every_tolerance_for_every_gamma() {
+    let gtr = model("gtr");
+    let roughness = [0.0, 0.1, 0.3, 0.6, 1.0];
+    let thetas = [0.0, 0.8, 1.4, FRAC_PI_2 - 0.03, FRAC_PI_2 - 1e-3, FRAC_PI_2];
+    for gamma in [1.0, 1.4, 3.0, 10.0] {
+        for (quantity, axes) in [
+            (&RHO_DH, vec![listed(ThetaI, &thetas)]),
+            (&RHO_HH, vec![]),
+            (&SPLIT_SUM, vec![listed(Mu, &[1e-3, 0.2, 1.0])]),
+        ] {
+            let mut plan = basis(quantity, gtr, &roughness, axes);
+            plan.lobes[0].parameters[0] = gamma;
+            let tried = Tried::new(plan);
+            for tolerance in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8] {
+                // The reference adds 1e-10.
+                let table = tried.assert_meets(device(), tolerance, 1e-10);
+                println!("{} γ = {gamma} to {tolerance:e}: {}", quantity.name, table.precision);
+            }
+        }
+    }
 }
 
 /// As α → 0, Blinn–Phong is Beckmann: cos^p θm = e^(−p θm²/2) but for O(α² x²), x = tan²θm/α².
@@ -41,7 +124,7 @@ fn blinn_phong_becomes_beckmann() {
 /// ∫ D cos θm dωm = 1, by the trapezoid in ln tan θm.
 #[test]
 fn normals_are_normalised() {
-    for name in NEW {
+    for (name, gamma) in NEW {
         for alpha in [0.01, 0.1, 0.5, 1.0] {
             let (step, mut sum) = (1e-2, 0.0);
             for k in -2500..2500 {
@@ -52,11 +135,11 @@ fn normals_are_normalised() {
                 if theta.cos() <= 2.0 * MIN_MU {
                     break;
                 }
-                let d = model(name).reference.unwrap().factors(&angles, &alpha.into()).unwrap().d;
+                let d = model(name).reference.unwrap().factors(&angles, &with_gamma(alpha, gamma)).unwrap().d;
                 sum += 2.0 * PI * step * d * tan * tan / (1.0 + tan * tan).powi(2);
             }
             // What is beyond 2⁻²³ is nothing; the trapezoid of a bell converges beyond f64.
-            assert!((sum - 1.0).abs() < 1e-9, "{name}, α = {alpha}: {sum}");
+            assert!((sum - 1.0).abs() < 1e-9, "{name}, γ = {gamma}, α = {alpha}: {sum}");
         }
     }
 }
@@ -85,12 +168,16 @@ fn charlie_is_no_mirror_at_alpha_0() {
 /// What is declared is broken, and by no more.
 #[test]
 fn energy_is_broken_as_declared() {
-    let rho = |name: &str, alpha: f64| {
-        let [a, b] = model(name).reference.unwrap().rho_dh(MIN_MU, &alpha.into());
+    let rho = |name: &str, alpha: f64, gamma: f64| {
+        let [a, b] = model(name).reference.unwrap().rho_dh(MIN_MU, &with_gamma(alpha, gamma));
         a + b
     };
-    let blinn = rho("blinn-phong", 1.0);
+    let gtr = rho("gtr", 1e-3, 1.0);
+    assert!((gtr - 144.61).abs() < 1e-2 && gtr <= model("gtr").rho_bound, "{gtr}");
+    assert!((rho("gtr", 0.1, 1.0) - 0.9 / (0.1 * 10f64.ln())).abs() < 1e-4);
+    assert!((rho("gtr", 0.1, 1.5) - 1.895).abs() < 1e-3 && rho("gtr", 0.1, 2.0) <= 1.0);
+    let blinn = rho("blinn-phong", 1.0, 0.0);
     assert!((blinn - PI.sqrt()).abs() < 1e-4 && blinn <= model("blinn-phong").rho_bound, "{blinn}");
-    let charlie = rho("charlie", 0.005);
+    let charlie = rho("charlie", 0.005, 0.0);
     assert!((charlie - 8.977).abs() < 1e-2 && charlie <= model("charlie").rho_bound, "{charlie}");
 }

@@ -33,7 +33,12 @@ pub(super) fn samples(fixed: &Fixed, s: &Setting, tolerance: f64, kinks: Kinks) 
         Normal { p: (k * r * r).exp_m1().sqrt(), m: 1.0, solid_angle }
     };
     let end = |t: f64| ((t * t).ln_1p() / k).sqrt().min(5.5);
-    directions(fixed, [counts(s, tolerance); 2], tolerance, &Normals { end: &end, at: &at, kinks })
+    directions(
+        fixed,
+        [counts(s, tolerance); 2],
+        tolerance,
+        &Normals { end: &end, at: &at, kinks, turn: None },
+    )
 }
 
 pub(super) fn most(s: &Setting, tolerance: f64, kinks: &Kinks) -> usize {

@@ -24,5 +24,5 @@ pub(super) fn samples(
         Normal { p: t, m: 1.0, solid_angle: TAU * alpha * t / (1.0 + t * t).powf(1.5) }
     };
     let end = |t_max: f64| (t_max / alpha).min(5.5);
-    directions(fixed, [counts; 2], tolerance, &Normals { end: &end, at: &at, kinks })
+    directions(fixed, [counts; 2], tolerance, &Normals { end: &end, at: &at, kinks, turn: None })
 }

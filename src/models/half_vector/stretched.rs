@@ -71,7 +71,7 @@ pub(crate) fn samples<N: Ndf, M: Masking>(
                 let turn = Turn::new(tan, [cos, sin_turn], weight);
                 let s = Setting { alpha, ..*s };
                 let (end, at) = (|t| N::fine_end(t, &s), |r| normal::<N>(N::fine_map(r, &s), &s));
-                let normals = Normals { end: &end, at: &at, kinks: M::KINKS };
+                let normals = Normals { end: &end, at: &at, kinks: M::KINKS, turn: None };
                 along(&turn, fixed, &nodes, tolerance, &normals, &mut samples);
             }
         }

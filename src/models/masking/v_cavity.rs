@@ -6,12 +6,12 @@
 //! masking of grooves that each have one of the slopes (Heitz 2014, section 5.2).
 
 use super::{Masking, Toward};
-use crate::models::half_vector::Kinks;
+use crate::models::half_vector::{DirectionKinks, Kinks};
 use crate::models::ndf::Ndf;
 use crate::models::{SlopeCounts, Term, part};
 use crate::pair::{Half, Pair};
 use crate::reference;
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI};
 
 pub(crate) struct VCavity;
 
@@ -24,7 +24,14 @@ impl Masking for VCavity {
     };
     const REFERENCE: &'static dyn reference::Masking = &reference::VCavity;
     const OF_NORMAL: bool = true;
-    const KINKS: Kinks = Kinks { breaks, most: 2, meet: Some(1.0), is_sharp: true, ..Kinks::NONE };
+    const KINKS: Kinks = Kinks {
+        breaks,
+        most: 2,
+        meet: Some(1.0),
+        is_sharp: true,
+        of_directions: Some(DirectionKinks { sin2, elevations }),
+        ..Kinks::NONE
+    };
 
     /// Where correlated Smith is nearly constant, kinks are not: measured.
     fn counts(correlated: [SlopeCounts; 2], tolerance: f64) -> [SlopeCounts; 2] {
@@ -51,4 +58,42 @@ impl Masking for VCavity {
 /// All three meet at c = 1. Below, masking begins with ωe; above, with ωi, until they change roles.
 fn breaks(c: f64) -> Vec<f64> {
     if c > 1.0 { vec![1.0 / c, c] } else { vec![((FRAC_PI_2 + c.atan()) / 3.0).tan()] }
+}
+
+/// Masking begins where 2 μ hz = |h|² = hz² + dt² + sin θi sin θe sin²(δ/2), of the smaller μ.
+fn sin2(p: &Pair) -> f64 {
+    let hz = p.hz2.sqrt();
+    (hz * (2.0 * p.mu_i.min(p.mu_e) - hz) - p.dt2) / p.ss
+}
+
+/// Where that has a solution at δφ = 0 and at π. There everything is in one plane, θm and the angle of incidence are
+/// b = |θi − θe|/2 and a = (θi + θe)/2 or the other way around, and the larger θ is a + b: masking begins at
+/// 2 cos(a + b) cos b = cos a, that is cos(a + 2b) = 0. With the elevations ψ = π/2 − θ that is, at δφ = 0, 3ψe = ψi or
+/// 3ψi = ψe, and at π 3ψe = π − ψi or ψe = π − 3ψi.
+fn elevations(psi: f64) -> [f64; 4] {
+    [psi / 3.0, 3.0 * psi, FRAC_PI_3 - psi / 3.0, PI - 3.0 * psi]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// At these elevations the kink is in the plane of incidence, unless the other direction has the smaller cosine.
+    #[test]
+    fn kinks_begin_and_end_in_the_plane_of_incidence() {
+        let mut found = [0; 2];
+        for psi in (1..100).map(|k| f64::from(k) * 0.01 * FRAC_PI_2) {
+            for (k, other) in
+                elevations(psi).into_iter().enumerate().filter(|(_, e)| 0.0 < *e && *e < FRAC_PI_2)
+            {
+                let sin2 = sin2(&Pair::new(FRAC_PI_2 - psi, FRAC_PI_2 - other));
+                let side = k / 2;
+                if (sin2 - side as f64).abs() < 1e-9 / (psi * other).cos() {
+                    found[side] += 1;
+                }
+            }
+        }
+        // Of two roots each, one is the kink's.
+        assert!(found[0] > 99 && found[1] > 50, "{found:?}");
+    }
 }

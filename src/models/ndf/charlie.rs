@@ -87,14 +87,16 @@ impl Ndf for Charlie {
         [counts, _]: [SlopeCounts; 2],
         tolerance: f64,
     ) -> Vec<Sample> {
-        charlie_map::samples(fixed.mu, counts, tolerance)
+        // What has kinks says so of directions too.
+        const { assert!(M::KINKS.most == 0 || M::KINKS.of_directions.is_some()) };
+        charlie_map::samples(fixed.mu, counts, tolerance, M::KINKS.of_directions)
     }
 
     fn most<M: Masking>([counts, _]: [SlopeCounts; 2]) -> usize {
-        charlie_map::most(counts)
+        charlie_map::most(counts, M::KINKS.of_directions)
     }
 
-    const MEAN: Option<fn(f64) -> Vec<Node>> = Some(charlie_map::mean);
+    const MEANS: Option<[fn(f64) -> Vec<Node>; 2]> = Some([charlie_map::mean, charlie_map::mean_with_kinks]);
 
     fn counts(_mu: f64, _s: &Setting, tolerance: f64) -> [SlopeCounts; 2] {
         charlie_map::counts(tolerance)

@@ -9,6 +9,7 @@ pub(crate) mod ggx_coarse;
 pub(crate) mod ggx_fine;
 pub(crate) mod ggx_nodes;
 pub(crate) mod ggx_samples;
+pub(crate) mod gtr;
 pub(crate) mod stretched;
 
 use super::fresnel::Fresnel;
@@ -54,6 +55,11 @@ pub(crate) trait Ndf: Sized {
         Self::VALUE_F32
     }
 
+    /// What ρ_dh reaches at most at a setting, where that is less than with the worst.
+    fn rho_most(_s: &Setting) -> f64 {
+        f64::INFINITY
+    }
+
     /// α along the tangent and along the bitangent.
     fn axes(s: &Setting) -> [f64; 2] {
         [s.alpha; 2]
@@ -86,8 +92,9 @@ pub(crate) trait Ndf: Sized {
     fn most<M: Masking>(counts: [SlopeCounts; 2]) -> usize {
         half_vector::most(&M::KINKS, counts)
     }
-    /// μ and weights of the mean ρ_hh, where its own rule of all models does not see what is in ρ.
-    const MEAN: Option<fn(tolerance: f64) -> Vec<Node>> = None;
+    /// μ and weights of the mean ρ_hh, where the rule of all models does not see what is in ρ: with a smooth masking, and
+    /// with one that has kinks.
+    const MEANS: Option<[fn(tolerance: f64) -> Vec<Node>; 2]> = None;
 
     /// r at which tan θm reaches `t_max`, and the map there: of one that has a map.
     fn fine_end(_t_max: f64, _: &Setting) -> f64 {

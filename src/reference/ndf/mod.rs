@@ -4,6 +4,7 @@ pub(super) mod beckmann;
 pub(super) mod blinn_phong;
 pub(super) mod charlie;
 pub(super) mod ggx;
+pub(super) mod gtr;
 
 use crate::setting::Setting;
 
