@@ -213,6 +213,8 @@ models! {
     classic::ward::MODEL,
     classic::ward_dur::MODEL,
     classic::blinn::MODEL,
+    classic::phong::MODEL,
+    classic::lafortune::MODEL,
     classic::ashikhmin_shirley::MODEL,
     classic::ashikhmin_shirley_diffuse::MODEL,
     mirror::MODEL,
@@ -352,9 +354,9 @@ impl Model {
         relative * if self.rho_bound.is_finite() { self.rho_bound.max(1.0) } else { 1.0 }
     }
 
-    /// f below which f32 has lost digits to underflow, sr⁻¹, where that is earlier than of most.
+    /// f below which f32 has lost digits, to underflow or to a difference, sr⁻¹, where that is earlier than of most.
     pub(crate) fn faint(&self) -> Option<f64> {
-        self.microfacet?.faint
+        self.microfacet.map_or_else(|| self.shape?.faint, |made| made.faint)
     }
 
     /// Whether f depends on both azimuths, and not on δφ alone.
