@@ -134,9 +134,11 @@ fn half_angle(x: f64, w: f64, s: f64) -> [f64; 2] {
 fn stops(fixed: &Fixed, q: f64, k: f64, [sin, cos]: [f64; 2], [first, last]: [f64; 2]) -> Vec<f64> {
     let theta = sin.atan2(cos);
     let beta = |&kink: &f64| [-1.0, 1.0].map(|side| theta + side * (kink / q).min(1.0).acos());
-    let inside = fixed.kinks.iter().filter(|&&kink| kink < q).flat_map(beta).filter(|beta| beta.abs() < FRAC_PI_2);
+    let inside =
+        fixed.kinks.iter().filter(|&&kink| kink < q).flat_map(beta).filter(|beta| beta.abs() < FRAC_PI_2);
     let r = |beta: f64| (-2.0 * beta.cos().ln() / k).sqrt().copysign(beta);
-    let mut stops: Vec<_> = inside.map(r).filter(|r| (first..last).contains(r)).chain([first, last]).collect();
+    let mut stops: Vec<_> =
+        inside.map(r).filter(|r| (first..last).contains(r)).chain([first, last]).collect();
     stops.sort_by(f64::total_cmp);
     stops
 }
@@ -144,10 +146,11 @@ fn stops(fixed: &Fixed, q: f64, k: f64, [sin, cos]: [f64; 2], [first, last]: [f6
 /// The share of the tolerance that is beyond the last r and t.
 const REST: f64 = 0.05;
 
-/// Nodes in t, of half the plane, and in r.
+/// Nodes in t, of half the plane, and in r, for tolerances 1e-1 … 1e-10, measured: the error of each count alone, and that
+/// of the next, worst over θ and α, is below 0.4 of the tolerance.
 fn counts(tolerance: f64) -> [usize; 2] {
     const COUNTS: [[usize; 2]; 10] =
-        [[3, 6], [4, 8], [5, 10], [7, 12], [8, 14], [9, 16], [10, 18], [12, 22], [13, 26], [14, 30]];
+        [[3, 5], [4, 8], [6, 11], [7, 13], [9, 16], [10, 19], [12, 21], [13, 26], [14, 30], [16, 34]];
     COUNTS[decade(tolerance)]
 }
 

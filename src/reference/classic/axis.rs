@@ -41,7 +41,11 @@ impl AboutAxis {
             return [0.0; 2];
         }
         // Of a delta all is at the axis.
-        let rho = if s.alpha == 0.0 { axis.cos * factor(axis.cos) } else { about(&axis, s.alpha, tolerance, factor) };
+        let rho = if s.alpha == 0.0 {
+            axis.cos * factor(axis.cos)
+        } else {
+            about(&axis, s.alpha, tolerance, factor)
+        };
         [axis.scale * rho, 0.0]
     }
 }
@@ -55,18 +59,19 @@ impl Reference for AboutAxis {
         self.rho(mu, s, TOLERANCE, &|_| 1.0)
     }
 
-    /// 2 ∫ ρ μ dμ with μ = w². ρ changes where μ ~ α, as the lobe meets the horizon, and where θ ~ α, as an axis of another
-    /// length than ωi's leaves the normal. As the mean weighs ρ with 2μ, it may be the coarser the smaller μ is.
+    /// 2 ∫ ρ μ dμ with μ = w². ρ changes where μ ~ α, as the lobe meets the horizon, and where an axis of another length
+    /// than ωi's leaves the normal or the horizon, θ or μ ~ α/√(1 − C²): that is on any scale from α on. As the mean weighs
+    /// ρ with 2μ, it may be the coarser the smaller μ is.
     fn rho_hh(&self, s: &Setting) -> [f64; 2] {
-        let widths = [1.0, 5.0, 25.0].map(|multiple| multiple * s.alpha);
-        let near = widths.into_iter().filter(|&mu| mu < 0.5).map(f64::sqrt);
-        let far = widths.into_iter().rev().filter(|&theta| theta < 0.7).map(f64::cos).map(f64::sqrt);
-        let mut breaks: Vec<_> = [0.0].into_iter().chain(near).chain(far).collect();
-        // cos 1e-9 is 1.
-        if breaks.last().is_none_or(|&last| last < 1.0) {
-            breaks.push(1.0);
-        }
-        let weighted = |w: f64| self.rho(w * w, s, TOLERANCE / (w * w), &|_| 1.0).map(|rho| 4.0 * w.powi(3) * rho);
+        // None below 1e-7, where a mean has nothing.
+        let scales =
+            || std::iter::successors(Some(s.alpha.max(1e-7)), |x| Some(5.0 * x)).take_while(|&x| x < 0.5);
+        let near = scales().map(f64::sqrt);
+        let mut far: Vec<_> = scales().map(f64::cos).map(f64::sqrt).collect();
+        far.reverse();
+        let breaks: Vec<_> = [0.0].into_iter().chain(near).chain(far).chain([1.0]).collect();
+        let weighted =
+            |w: f64| self.rho(w * w, s, TOLERANCE / (w * w), &|_| 1.0).map(|rho| 4.0 * w.powi(3) * rho);
         integrate(weighted, &breaks, 10.0 * TOLERANCE).value_or_nan()
     }
 
