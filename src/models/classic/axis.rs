@@ -53,10 +53,11 @@ impl Axis {
         (length, if length > 0.0 { [x / length, z / length] } else { [0.0, 1.0] })
     }
 
-    /// ρ_dh of the narrowest lobe.
+    /// ρ_dh of the narrowest lobe: all of it is there where |Cu| = 1, by 1 − |Cu|², and none where it is less.
     pub fn narrow(&self, mu: f64) -> f64 {
-        let (length, [_, cos]) = self.of(mu, ((1.0 - mu) * (1.0 + mu)).sqrt());
-        if length >= 1.0 { cos } else { 0.0 }
+        let Self { cxy, cz } = *self;
+        let across = (1.0 - cxy) * (1.0 + cxy) * (1.0 - mu) * (1.0 + mu);
+        if across + (1.0 - cz) * (1.0 + cz) * mu * mu > 0.0 { 0.0 } else { cz * mu }
     }
 }
 

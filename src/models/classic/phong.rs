@@ -21,6 +21,7 @@
 //! ρ_dh(θ) = C (cos θ ∫ cosⁿ⁺¹β dβ + sinⁿ⁺²θ/(n + 1)),   β ∈ [θ − π/2, π/2],   C = (n + 2)/(2π) ∫ (1 − w²)^((n+1)/2) dw
 //! ```
 //!
+//! whose derivative, C sin θ (cos θ sinⁿθ/(n + 1) − ∫ cosⁿ⁺¹β dβ), is nowhere positive: no direction reflects more than all.
 //! n = 1: 2/π (cos θ ((π − θ)/2 + sin 2θ/4) + sin³θ/2), which is 1/π where ωi grazes. α → 0 tends to a mirror that reflects
 //! μ.
 //!

@@ -25,7 +25,7 @@ pub static LAFORTUNE: &dyn Reference = &AboutAxis {
         let length = (c[0] * sin).hypot(c[1] * mu);
         let scale = match s.alpha {
             _ if length == 0.0 => 0.0,
-            0.0 if length < 1.0 => 0.0,
+            0.0 if lost(mu, sin, c) > 0.0 => 0.0,
             0.0 => 1.0,
             alpha => (0.5 * exponent(alpha) * (-lost(mu, sin, c)).ln_1p()).exp(),
         };
