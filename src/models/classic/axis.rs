@@ -45,12 +45,12 @@ impl Axis {
     /// Phong's.
     pub const MIRROR: Self = Self { cxy: -1.0, cz: 1.0 };
 
-    /// |Cu|, and sine and cosine of its angle to the normal.
-    fn of(&self, mu: f64, sin: f64) -> (f64, [f64; 2]) {
+    /// Sine and cosine of the angle of Cu to the normal.
+    fn of(&self, mu: f64, sin: f64) -> [f64; 2] {
         let (x, z) = (self.cxy.abs() * sin, self.cz * mu);
         let length = x.hypot(z);
         // C = 0 has no axis, and no lobe.
-        (length, if length > 0.0 { [x / length, z / length] } else { [0.0, 1.0] })
+        if length > 0.0 { [x / length, z / length] } else { [0.0, 1.0] }
     }
 
     /// ρ_dh of the narrowest lobe: all of it is there where |Cu| = 1, by 1 − |Cu|², and none where it is less.
@@ -71,7 +71,7 @@ impl Axis {
 /// and cosⁿ⁺¹β = e^(−r²), qⁿ⁺² = e^(−t²) are analytic maps of both for any n, up to where the rest is small.
 pub(super) fn samples(fixed: &Fixed, axis: &Axis, alpha: f64, tolerance: f64) -> Vec<Sample> {
     let (mu, sin) = (fixed.mu, fixed.sin());
-    let (_, normal) = axis.of(mu, sin);
+    let normal = axis.of(mu, sin);
     let [sin_axis, cos_axis] = normal;
     // k = 2/(n + 1), l = 2/(n + 2)
     let k = alpha * alpha;
