@@ -40,6 +40,11 @@ impl std::str::FromStr for Check {
 /// Relative errors of values are taken of max(f, this), in sr⁻¹: below it f32 runs out of exponent.
 pub const VALUE_FLOOR: f64 = 1e-30;
 
+/// The same of a sum of lobes, some of which may lose their digits earlier.
+pub(crate) fn value_floor(lobes: &[Lobe]) -> f64 {
+    lobes.iter().filter_map(|lobe| lobe.model.faint()).fold(VALUE_FLOOR, f64::max)
+}
+
 /// Compares `values` with the reference. A NaN anywhere makes the largest error infinite.
 ///
 /// `tick` is called between comparisons and stops them by an error.
@@ -76,7 +81,7 @@ impl<'a> Comparison<'a> {
         };
         let error = TableError {
             kind: table.quantity.error,
-            floor: (table.quantity.error == ErrorKind::Relative).then_some(VALUE_FLOOR),
+            floor: (table.quantity.error == ErrorKind::Relative).then(|| value_floor(&table.lobes)),
             estimate,
             measured_max: None,
             measured_rms: None,

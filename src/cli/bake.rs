@@ -75,7 +75,7 @@ positions \"centers\" or \"nodes\" and mapping \"linear\" or \"sqrt\". The READM
 Exit codes: 0 success, 1 a table misses its tolerance, 2 bad input, 3 no device, 130 interrupted.
 Whatever was in DIR stays as it was unless all of it succeeds.";
 
-fn tolerance(text: &str) -> Result<f64, String> {
+pub(super) fn tolerance(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| format!("\"{text}\" is not a number"))?;
     if value > 0.0 && value <= 1.0 { Ok(value) } else { Err("give a number above 0, to 1".into()) }
 }

@@ -1,8 +1,11 @@
 //! `gonio models`
 
+mod costs;
+
 use super::{HEADING, print, print_json};
 use crate::error::Result;
 use crate::factor::Compensation;
+use crate::gpu::DeviceChoice;
 use crate::models::{self, Component, FRESNELS, Integral, MASKINGS, MODELS, Metal, Model, Shape, Term};
 use serde_json::{Value, json};
 
@@ -12,6 +15,17 @@ pub struct Args {
     /// One model in detail: its parameters, parts, source and promises; or a Fresnel term, on the ideal mirror
     #[arg(value_name = "NAME")]
     name: Option<String>,
+    /// Measure what tolerances cost: ρ_dh and ρ_hh of the model, or of each, at the extremes of θi and roughness, the
+    /// evaluations that a texel takes and the largest error against the f64 reference
+    #[arg(long)]
+    costs: bool,
+    /// With --costs: the tolerances
+    #[arg(long, value_name = "T", num_args = 1.., requires = "costs", default_values_t = [1e-2, 1e-4, 1e-6],
+          value_parser = super::bake::tolerance)]
+    tolerance: Vec<f64>,
+    /// With --costs: auto, the best GPU, else software Vulkan, else the CPU path; cpu; or a part of an adapter's name
+    #[arg(long, value_name = "NAME", requires = "costs", default_value = "auto")]
+    device: DeviceChoice,
     /// Print JSON on stdout
     #[arg(long)]
     json: bool,
@@ -23,8 +37,10 @@ Examples:
   gonio models ggx
   gonio models ggx-smith-separable-none
   gonio models conductor
+  gonio models --costs
+  gonio models ggx --costs --tolerance 1e-3 1e-8
 
-Exit codes: 0 success, 2 no such model";
+Exit codes: 0 success, 1 a tolerance is missed, 2 no such model, 3 no device, 130 interrupted";
 
 /// A parameter, in the words of recipes and of --set.
 pub(super) struct Parameter {
@@ -37,6 +53,13 @@ pub(super) struct Parameter {
 }
 
 pub fn run(args: &Args) -> Result<()> {
+    if args.costs {
+        let models = match &args.name {
+            Some(name) => vec![model_or_term(name)?],
+            None => MODELS.to_vec(),
+        };
+        return costs::run(&models, &args.tolerance, &args.device, args.json);
+    }
     match &args.name {
         Some(name) => one(model_or_term(name)?, args.json),
         None if args.json => print_json(&json!({
@@ -56,7 +79,7 @@ fn model_or_term(name: &str) -> Result<&'static Model> {
 }
 
 fn list() -> Result<()> {
-    let line = |name: &str, summary: &str| print(&format!("  {name:18}{summary}"));
+    let line = |name: &str, summary: &str| print(&format!("  {name:26}{summary}"));
     print(&format!("{HEADING}models{HEADING:#}"))?;
     MODELS.iter().try_for_each(|model| line(model.name, model.summary))?;
     for (kind, terms) in [("masking", &MASKINGS[..]), ("fresnel", &FRESNELS[..])] {

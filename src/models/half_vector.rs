@@ -83,14 +83,19 @@ impl Kinks {
 /// Shirley's over α.
 pub(super) fn mean(tolerance: f64) -> Vec<Node> {
     const NODES: [usize; 10] = [3, 4, 6, 8, 12, 16, 20, 26, 32, 40];
-    let below = |n: &Node| [FRAC_1_SQRT_2 * n.x * n.x, FRAC_1_SQRT_2 * n.x * n.weight];
-    let above = |n: &Node| {
-        let width = 1.0 - FRAC_1_SQRT_2;
-        [1.0 - width * n.x * n.x, width * n.x * n.weight]
-    };
-    let nodes = gauss_legendre(NODES[decade(tolerance)]);
-    let all = nodes.iter().map(below).chain(nodes.iter().map(above));
-    all.map(|[mu, half]| Node { x: mu, weight: 4.0 * mu * half }).collect()
+    mean_by([NODES[decade(tolerance)]; 2], 1)
+}
+
+/// The same by so many nodes below and above, √(1 − μ) in proportion to this power of the node's.
+pub(super) fn mean_by([below, above]: [usize; 2], power: i32) -> Vec<Node> {
+    let below = gauss_legendre(below);
+    let below = below.iter().map(|n| [FRAC_1_SQRT_2 * n.x * n.x, FRAC_1_SQRT_2 * n.x * n.weight]);
+    let above = gauss_legendre(above);
+    let above = above.iter().map(|n| {
+        let (width, x) = (1.0 - FRAC_1_SQRT_2, n.x.powi(power));
+        [1.0 - width * x * x, width * x * f64::from(power) * n.x.powi(power - 1) * n.weight]
+    });
+    below.chain(above).map(|[mu, half]| Node { x: mu, weight: 4.0 * mu * half }).collect()
 }
 
 /// Directions of an NDF's normals.

@@ -214,6 +214,8 @@ models! {
     classic::ward::MODEL,
     classic::ward_dur::MODEL,
     classic::blinn::MODEL,
+    classic::phong::MODEL,
+    classic::lafortune::MODEL,
     classic::ashikhmin_shirley::MODEL,
     classic::ashikhmin_shirley_diffuse::MODEL,
     mirror::MODEL,
@@ -362,9 +364,9 @@ impl Model {
         self.integral_f32()
     }
 
-    /// f below which f32 has lost digits to underflow, sr⁻¹, where that is earlier than of most.
+    /// f below which f32 has lost digits, to underflow or to a difference, sr⁻¹, where that is earlier than of most.
     pub(crate) fn faint(&self) -> Option<f64> {
-        self.microfacet?.faint
+        self.microfacet.map_or_else(|| self.shape?.faint, |made| made.faint)
     }
 
     /// Whether f depends on both azimuths, and not on δφ alone.

@@ -1,6 +1,7 @@
 //! What models take beside the weights of their components: a roughness, and numbers of their own.
 
 use super::ALPHA_MIN_VALUE;
+use super::classic::FAINT_ABOUT_AXIS;
 use super::ndf::gtr::ALPHA_LEAST;
 use std::f64::consts::FRAC_PI_2;
 
@@ -25,6 +26,8 @@ pub struct Shape {
     floor: f64,
     /// Whether it is a share σ whose rest 1 − σ matters as much: shaders get σ/(1 − σ).
     odds: bool,
+    /// f below which a lobe of it is known absolutely, sr⁻¹, where that is earlier than of most.
+    pub(crate) faint: Option<f64>,
 }
 
 /// A number that a model takes beside its roughness and the weights of its components.
@@ -56,10 +59,18 @@ impl Shape {
         anisotropic: false,
         floor: 0.0,
         odds: false,
+        faint: None,
     };
 
     /// The mean α = √(αx αy) of slopes that differ along the tangent and the bitangent.
     pub const ALPHA_XY: Self = Self { anisotropic: true, ..Self::ALPHA };
+
+    /// α = roughness², the width of a lobe about an axis that is not the normal: α → 0 is a delta.
+    pub const ABOUT_AXIS: Self = Self {
+        summary: "the width of the lobe about its axis, alpha = roughness²; its exponent is 2/alpha² - 1",
+        faint: Some(FAINT_ABOUT_AXIS),
+        ..Self::ALPHA
+    };
 
     /// α = roughness², how much fibres lean: α → 0 is no mirror.
     pub const SHEEN: Self = Self {
@@ -87,6 +98,7 @@ impl Shape {
         anisotropic: false,
         floor: 0.0,
         odds: false,
+        faint: None,
     };
 
     /// σ of slopes as angles, rad.
@@ -100,6 +112,7 @@ impl Shape {
         anisotropic: false,
         floor: 0.0,
         odds: false,
+        faint: None,
     };
 
     /// The roughness as it is, as the share of what vanishes with it: f32 has both ends in full as odds alone.

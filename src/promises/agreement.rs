@@ -45,7 +45,7 @@ impl Property for Agreement {
             let relative = error / exact.abs().max(subject.faint());
             self.squares += relative * relative;
             self.count += 1;
-            self.ulp = self.ulp.max(error / ulp(exact));
+            self.ulp = self.ulp.max(error / ulp(exact.abs().max(subject.faint())));
             worst = worst.max(relative);
         }
         worst
@@ -60,7 +60,7 @@ impl Property for Agreement {
     }
 }
 
-/// The spacing of f32 at a value.
+/// The spacing of f32 at a positive value.
 fn ulp(value: f64) -> f64 {
-    value.abs().max(FAINT).log2().floor().exp2() * f64::from(f32::EPSILON)
+    value.log2().floor().exp2() * f64::from(f32::EPSILON)
 }

@@ -44,6 +44,8 @@ pub(super) struct Pair {
     pub one_minus_cos_d: f64,
     /// ωi + ωe
     pub h: DVec3,
+    /// ωe − ωi
+    pub d: DVec3,
 }
 
 impl Pair {
@@ -87,6 +89,7 @@ impl Pair {
             cos_d,
             one_minus_cos_d,
             h,
+            d,
         }
     }
 }

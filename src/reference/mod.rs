@@ -29,6 +29,8 @@ pub(crate) use anisotropic::Anisotropic;
 pub use classic::{
     ashikhmin_shirley::{ASHIKHMIN_SHIRLEY, ASHIKHMIN_SHIRLEY_DIFFUSE},
     blinn::BLINN,
+    lafortune::LAFORTUNE,
+    phong::PHONG,
     ward::WARD,
     ward_dur::WARD_DUR,
 };

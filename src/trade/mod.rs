@@ -2,6 +2,7 @@
 //! run, and which of them nobody beats in both.
 
 mod candidates;
+mod costs;
 mod floor;
 mod front;
 mod subset;
@@ -9,6 +10,7 @@ mod timing;
 #[cfg(feature = "files")]
 mod write;
 
+pub use costs::{Cost, costs};
 pub use floor::Floor;
 pub use front::front;
 #[cfg(feature = "files")]

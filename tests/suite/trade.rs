@@ -8,7 +8,7 @@ use gonio::gpu::{Kernel, compose, validate};
 use gonio::plan::{Precision, Rule, TablePlan};
 use gonio::quantity::{RHO_DH, RHO_HH, SPLIT_SUM};
 use gonio::storage::Storage;
-use gonio::trade::{Options, measure};
+use gonio::trade::{Cost, Options, costs, measure};
 use std::process::Command;
 
 fn rough(count: usize, mus: usize) -> TablePlan {
@@ -260,4 +260,46 @@ fn the_command_writes_its_three_files() {
         assert_eq!(output.status.code(), Some(2));
         assert!(String::from_utf8_lossy(&output.stderr).contains(words), "{bad:?}");
     }
+}
+
+/// What tolerances cost is measured: each is met by what was counted, a finer one takes no less and a much finer one more,
+/// and what has no integrals has no costs.
+#[test]
+fn what_tolerances_cost_is_measured() {
+    let tolerances = [1e-2, 1e-4, 1e-6];
+    for name in ["lambert", "oren-nayar", "ggx", "phong", "mirror"] {
+        let costs = costs(device(), model(name), &tolerances, &Unobserved).unwrap();
+        assert_eq!(costs.len(), 6);
+        for of_quantity in costs.chunks(3) {
+            for cost in of_quantity {
+                assert!(cost.is_met() && cost.texels >= 1 && cost.evaluations >= 1, "{cost:?}");
+            }
+            assert!(of_quantity.is_sorted_by_key(|cost| cost.evaluations), "{of_quantity:?}");
+        }
+        if ["ggx", "phong"].contains(&name) {
+            assert!(costs[2].evaluations > 2 * costs[0].evaluations, "{costs:?}");
+            // By the nodes of the coarsest the finest is not met: the errors are no constants.
+            assert!(costs[0].error > tolerances[2], "{costs:?}");
+        }
+        assert!(!Cost { error: f64::NAN, ..costs[0].clone() }.is_met());
+        assert!(!Cost { error: 2.0 * costs[0].tolerance, ..costs[0].clone() }.is_met());
+    }
+    assert!(costs(device(), model("ward"), &tolerances, &Unobserved).unwrap().is_empty());
+}
+
+/// The command says the same to people and machines, and refuses tolerances without `--costs`.
+#[test]
+fn the_command_prints_what_tolerances_cost() {
+    let gonio =
+        |arguments: &[&str]| Command::new(env!("CARGO_BIN_EXE_gonio")).args(arguments).output().unwrap();
+    let output =
+        gonio(&["models", "lambert", "--costs", "--tolerance", "1e-3", "1e-5", "--json", "--device", "cpu"]);
+    assert!(output.status.success(), "{output:?}");
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let costs = json["costs"].as_array().unwrap();
+    assert_eq!(costs.len(), 4);
+    assert_eq!(json["device"]["name"], "cpu");
+    assert!(costs.iter().all(|cost| cost["error"].as_f64().unwrap() <= cost["tolerance"].as_f64().unwrap()));
+    let output = gonio(&["models", "lambert", "--tolerance", "1e-3"]);
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
 }

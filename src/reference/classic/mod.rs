@@ -1,8 +1,11 @@
-//! Classic lobes of the half vector.
+//! Classic lobes: of the half vector, and about an axis.
 
 pub(super) mod ashikhmin_shirley;
+mod axis;
 pub(super) mod blinn;
+pub(super) mod lafortune;
 mod normals;
+pub(super) mod phong;
 pub(super) mod ward;
 pub(super) mod ward_dur;
 

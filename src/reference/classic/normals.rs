@@ -42,8 +42,9 @@ pub(super) fn rho_dh(f: impl Fn(&Pair) -> [f64; 2], tolerance: f64, mu: f64, wid
                 tan2_m: tan_m * tan_m,
                 cos_d,
                 one_minus_cos_d: 1.0 - cos_d,
-                // Isotropic models do not look at it.
+                // Lobes of the normal do not look at them.
                 h: glam::DVec3::NAN,
+                d: glam::DVec3::NAN,
             };
             // dωm = sin θm dθm dφ, dθm = cos²θm dtan θm
             let solid_angle = tan_m * cos_m * cos2_m * width * v.cosh();
