@@ -29,9 +29,8 @@ impl Nodes {
     }
 
     pub fn most(&self, scale: &Scale, tolerance: f64) -> usize {
-        const KINKS: usize = 4;
         let [theta, mu, phi] = self.counts(scale, tolerance);
-        (1 + KINKS) * (theta + mu) * phi * 2
+        (2 + scale.most_kinks()) * (theta + mu) * phi * 2
     }
 
     /// Directions for a fixed cosine, which weigh cos θ dω.

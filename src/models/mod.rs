@@ -201,6 +201,7 @@ macro_rules! models {
 models! {
     diffuse::lambert::MODEL,
     diffuse::gltf_diffuse::MODEL,
+    diffuse::gltf_oren_nayar::MODEL,
     diffuse::oren_nayar::MODEL,
     diffuse::fujii::MODEL,
     diffuse::eon::MODEL,

@@ -5,6 +5,7 @@ pub(crate) mod eon;
 pub(crate) mod frostbite;
 pub(crate) mod fujii;
 pub(crate) mod gltf_diffuse;
+pub(crate) mod gltf_oren_nayar;
 mod grazing;
 pub(crate) mod lambert;
 #[cfg(test)]

@@ -5,6 +5,7 @@ pub(super) mod eon;
 pub(super) mod frostbite;
 pub(super) mod fujii;
 pub(super) mod gltf;
+pub(super) mod gltf_oren_nayar;
 pub(super) mod lambert;
 pub(super) mod oren_nayar;
 
