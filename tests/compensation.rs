@@ -129,7 +129,10 @@ fn values_agree_with_the_reference() {
 #[test]
 fn coats_and_sheen_agree_with_the_reference() {
     let sheen = Albedo { model: model(WHITE), roughness: Some(0.7), parameters: model(WHITE).defaults() };
+    let charlie = model("charlie-smith-correlated-none");
+    let charlie = Albedo { model: charlie, roughness: Some(0.4), parameters: charlie.defaults() };
     let factors = [
+        vec![Factor::BelowSheen { of: charlie, most: 0.9 }],
         vec![Factor::Coat { weight: 0.8 }],
         vec![Factor::BelowCoat { weight: 1.0 }],
         vec![Factor::BelowSheen { of: sheen, most: 0.6 }, Factor::BelowCoat { weight: 0.5 }],
@@ -282,6 +285,14 @@ fn recipes_and_plans_say_it() {
     let table = bake(device(), &plan.tables[0], Check::Sample(8));
     assert!(table.error.measured_max.unwrap() <= plan.tables[0].tolerance);
 
+    // Filament's is Turquin's by another name.
+    let named = |word: &str| {
+        let text = format!(
+            "[materials.m]\nlobes = [{{ model = \"ggx\", roughness = 0.5, f0 = 0.9, compensation = \"{word}\" }}]"
+        );
+        recipe(&text).unwrap().materials[0].lobes[0].compensation
+    };
+    assert_eq!(named("filament"), named("turquin"));
     for (text, why) in [
         (r#"model = "lambert", albedo = 0.5, compensation = "turquin""#, "compensation"),
         (r#"model = "ggx", roughness = 0.5, f0 = 1, compensation = "turkey""#, "turquin"),
