@@ -207,6 +207,8 @@ models! {
     diffuse::eon::MODEL,
     diffuse::burley::MODEL,
     diffuse::frostbite::MODEL,
+    diffuse::disney_subsurface::MODEL,
+    diffuse::disney_sheen::MODEL,
     microfacet::GGX,
     microfacet::BECKMANN,
     microfacet::BLINN_PHONG,

@@ -1,6 +1,6 @@
 //! glTF 2.0's metallic-roughness, Appendix B.3.5, and its extensions: what the way they add lobes up breaks.
 
-use super::{Material, MaterialLobe, Weights};
+use super::{Formula, Material, MaterialLobe, Weights};
 use crate::factor::Factor;
 use crate::models::{self, Violation};
 
@@ -41,16 +41,23 @@ pub(super) fn energy(material: &Material) -> Violation {
     }
 }
 
-/// What a material that no format describes gains by its sheen.
-pub(super) fn sheen(material: &Material) -> Option<Violation> {
-    let lobes = material.lobes.iter().filter(|lobe| !is_sheen(material, lobe));
-    let bound =
-        |lobe: &MaterialLobe| models::find(&lobe.model).map_or(1.0, |model| model.rho_bound) * most(lobe);
-    material.lobes.iter().any(|lobe| is_sheen(material, lobe)).then(|| Violation {
-        property: "energy",
-        bound: under_sheen(material, lobes.map(bound).sum::<f64>().max(1.0)),
-        source: "KHR_materials_sheen: Charlie's Λ is a fit, with which its lobe reflects more than 1 near grazing",
-    })
+/// What a material that no format describes gains by models that are known to, or by its sheen: the sum of what each may
+/// reach.
+pub(super) fn of_models(material: &Material) -> Option<Violation> {
+    let violation = |lobe: &MaterialLobe| {
+        let violation = models::find(&lobe.model).ok()?.violation()?;
+        (violation.bound.is_finite() && most(lobe) > 0.0).then_some(violation)
+    };
+    let source = material.lobes.iter().find_map(violation)?.source;
+    let base = material.lobes.iter().filter(|lobe| !is_sheen(material, lobe));
+    let bound = |lobe: &MaterialLobe| models::find(&lobe.model).map_or(1.0, |model| model.rho_bound);
+    // Of a lobe that Fresnel splits, F90 is the most that it shows.
+    let shown = |lobe: &MaterialLobe| match &lobe.weights {
+        Weights::Constant(weights) => weights.as_flattened().iter().copied().fold(0.0, f64::max),
+        Weights::Textured(formulas) => formulas.each_ref().map(Formula::most).into_iter().fold(0.0, f64::max),
+    };
+    let base = base.map(|lobe| if shown(lobe) > 0.0 { shown(lobe) * bound(lobe) } else { 0.0 });
+    Some(Violation { property: "energy", bound: under_sheen(material, base.sum::<f64>().max(1.0)), source })
 }
 
 /// The bound B of what lies below a sheen of the colour m and the bound S, and of the sheen with it:

@@ -1,5 +1,6 @@
 //! Recipes: materials and tables written by hand, in TOML. The README documents the format.
 
+mod disney;
 mod document;
 
 use super::{Distribution, Material, MaterialLobe, Scene, SubjectRequest, TableRequest, Weights};
@@ -55,13 +56,19 @@ fn material(item: Item) -> Result<Material> {
     if name.trim().is_empty() || name.contains(char::is_control) {
         return Err(item.refuse("a material needs a name that can be printed"));
     }
-    let fields = item.table(&["lobes", "sheen"])?;
-    let lobes = fields.require("lobes")?;
-    let items = lobes.items()?;
-    if items.is_empty() {
-        return Err(lobes.refuse("the list is empty; give at least one { model = …, … }"));
-    }
-    let mut lobes = items.into_iter().map(lobe).collect::<Result<Vec<_>>>()?;
+    let fields = item.table(&["lobes", "disney", "sheen"])?;
+    let mut lobes = match (fields.get("lobes"), fields.get("disney")) {
+        (Some(_), Some(item)) => return Err(item.refuse("lobes are given too; keep one of them")),
+        (None, Some(item)) => disney::lobes(item)?,
+        _ => {
+            let lobes = fields.require("lobes")?;
+            let items = lobes.items()?;
+            if items.is_empty() {
+                return Err(lobes.refuse("the list is empty; give at least one { model = …, … }"));
+            }
+            items.into_iter().map(lobe).collect::<Result<Vec<_>>>()?
+        }
+    };
     if let Some(item) = fields.get("sheen") {
         sheen(item, &mut lobes)?;
     }

@@ -77,7 +77,7 @@ impl Material {
     pub fn violation(&self) -> Option<Violation> {
         match self.metallic {
             Some(_) => Some(metallic_roughness::energy(self)),
-            None => metallic_roughness::sheen(self),
+            None => metallic_roughness::of_models(self),
         }
     }
 

@@ -1,6 +1,8 @@
 //! Lobes as wide as the hemisphere.
 
 pub(crate) mod burley;
+pub(crate) mod disney_sheen;
+pub(crate) mod disney_subsurface;
 pub(crate) mod eon;
 pub(crate) mod frostbite;
 pub(crate) mod fujii;

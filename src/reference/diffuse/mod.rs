@@ -1,6 +1,7 @@
 //! Diffuse lobes.
 
 pub(super) mod burley;
+pub(super) mod disney;
 pub(super) mod eon;
 pub(super) mod frostbite;
 pub(super) mod fujii;
