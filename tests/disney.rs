@@ -182,7 +182,7 @@ fn promises_are_kept_or_declared() {
     for (disney, gains) in [(white, true), (gold, false)] {
         let scene = scene(&disney.recipe()).unwrap();
         let mut subject = Sum::material(device(), &scene.materials[0]).unwrap();
-        let report = check(&mut subject, &Options { budget: 50_000, search: true }, &Unobserved).unwrap();
+        let report = check(&mut subject, &Options { budget: 20_000, search: true }, &Unobserved).unwrap();
         for finding in &report.findings {
             println!("{}: {:?} {}", finding.property, finding.verdict, finding.said);
             let declared = gains && finding.property == "energy";

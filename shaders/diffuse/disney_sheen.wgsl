@@ -1,4 +1,4 @@
-// Burley 2012, section 5.6: the sheen is Schlick's Fc = (1 − ωi·ωm)⁵.
+// Burley 2012, disney.brdf: the sheen is Schlick's Fc = (1 − ωi·ωm)⁵.
 
 fn lobe(p: Pair, a: Azimuth, alpha: real, row: real) -> real2 {
     let h = half_vector(p, a);

@@ -16,8 +16,7 @@ pub enum Compensation {
     KullaConty,
     /// In the lobe's own shape; white to every view, not reciprocal. See [`Factor::Restored`]. Filament's is the same:
     /// 1 + F0 (1/dfg.y − 1) (Filament, *Physically Based Rendering in Filament*, section 4.7.2, "Energy loss in specular
-    /// reflectance"), where dfg.y = ∫ D V (n·l) dl with F = 1 at the view is the E(μe) of Turquin's 1 + F0 (1 − E)/E
-    /// (section 3.2).
+    /// reflectance"), where dfg.y = ∫ D V (n·l) dl with F = 1 at the view is the E(μe) of Turquin's 1 + F0 (1 − E)/E.
     Turquin,
 }
 

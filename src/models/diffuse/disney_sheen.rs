@@ -1,4 +1,4 @@
-//! The sheen of Burley 2012, *Physically-Based Shading at Disney*, section 5.6; the formula is BRDF Explorer's `disney.brdf`.
+//! The sheen of Burley 2012, *Physically-Based Shading at Disney*; the formula is `FH` of BRDF Explorer's `disney.brdf`.
 //! Twin of `shaders/diffuse/disney_sheen.wgsl`.
 //!
 //! ```text
@@ -22,7 +22,7 @@ use crate::reference;
 pub(crate) static MODEL: Model = Model {
     name: "disney-sheen",
     summary: "Disney's sheen, Schlick's weight as a lobe: f = color (1 − ωi·ωm)⁵",
-    source: "Burley 2012, section 5.6; disney.brdf",
+    source: "Burley 2012; disney.brdf",
     microfacet: None,
     components: &[Component { name: "A", weight: "color", default: None }],
     shape: None,

@@ -1,5 +1,5 @@
 //! What Burley's principled BRDF mixes into its diffuse lobe for a surface that light enters, after Hanrahan & Krueger 1993:
-//! Burley 2012, *Physically-Based Shading at Disney*, section 5.3; the formula is BRDF Explorer's `disney.brdf`. Twin of
+//! Burley 2012, *Physically-Based Shading at Disney*; the formula is `ss` of BRDF Explorer's `disney.brdf`. Twin of
 //! `shaders/diffuse/disney_subsurface.wgsl`.
 //!
 //! ```text
@@ -30,7 +30,7 @@ use std::f64::consts::FRAC_1_PI;
 pub(crate) static MODEL: Model = Model {
     name: "disney-subsurface",
     summary: "Disney's flat diffuse lobe of a surface that light enters",
-    source: "Burley 2012, section 5.3; disney.brdf",
+    source: "Burley 2012; disney.brdf",
     microfacet: None,
     components: &Component::DIFFUSE,
     shape: Some(Shape::ROUGHNESS),

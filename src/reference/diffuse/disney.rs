@@ -5,12 +5,12 @@ use crate::reference::{Angles, Reference, definition};
 use crate::setting::Setting;
 use std::f64::consts::FRAC_1_PI;
 
-/// Burley 2012, *Physically-Based Shading at Disney*, section 5.3, after Hanrahan & Krueger 1993; `ss` of `disney.brdf`:
+/// Burley 2012, *Physically-Based Shading at Disney*, after Hanrahan & Krueger 1993; `ss` of `disney.brdf`:
 /// A = 1.25 (Fss (1/(μi + μe) − 0.5) + 0.5)/π, Fss = (1 + (Fss90 − 1) FL)(1 + (Fss90 − 1) FV), Fss90 = cos² θd roughness, with
 /// Schlick's FL and FV of the cosines.
 pub static DISNEY_SUBSURFACE: &dyn Reference = &Subsurface;
 
-/// Section 5.6; `FH` of `disney.brdf`: A = (1 − cos θd)⁵, cos θd = ωi·ωm.
+/// Its sheen, `FH` of `disney.brdf`: A = (1 − cos θd)⁵, cos θd = ωi·ωm.
 pub static DISNEY_SHEEN: &dyn Reference = &Sheen;
 
 struct Subsurface;

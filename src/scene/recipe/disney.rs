@@ -10,7 +10,7 @@
 //! αx = max(0.001, roughness²/aspect),  αy = max(0.001, roughness² aspect),  aspect = √(1 − 0.9 anisotropic)
 //! ```
 //!
-//! Masking is of these α, as `disney.brdf` has it since 2014; the notes of 2012 took it of α = (1/2 + roughness/2)². The
+//! Masking is of these α, as `disney.brdf` has it today; the notes of 2012 took it of α = (1/2 + roughness/2)². The
 //! clearcoat, a GTR lobe with γ = 1, is refused.
 
 use super::{Fields, Item, channels};
