@@ -77,7 +77,7 @@ impl Texels {
             for (counts, k) in counts.iter_mut().zip(rgb) {
                 counts[pixel[k].into()] += 1;
             }
-            let alpha = if channels % 2 == 0 { pixel[channels - 1].into() } else { levels - 1 };
+            let alpha = if channels.is_multiple_of(2) { pixel[channels - 1].into() } else { levels - 1 };
             counts[3][alpha] += 1;
         }
         Self(counts)
