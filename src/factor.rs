@@ -13,7 +13,7 @@ pub use compensation::Compensation;
 
 use crate::models::{Integral, Model, Violation};
 use crate::setting::{Parameters, Setting};
-use curve::Curve;
+use curve::{CROSSINGS, Curve};
 use std::sync::Arc;
 
 /// A factor s(μi, μe); several multiply.
@@ -56,7 +56,9 @@ pub enum Factor {
         weight: f64,
     },
     /// What lies below a sheen: min(1 − m E(μi), 1 − m E(μe)) with E of the sheen's lobe (KHR_materials_sheen,
-    /// albedo scaling, after Conty Estevez & Kulla 2017).
+    /// albedo scaling, after Conty Estevez & Kulla 2017), where E counts as 1 if it is more, which Charlie's is near
+    /// grazing: nothing is negative then, and s is linear in m. Tables in unorm formats, which engines read E from, do
+    /// the same.
     BelowSheen {
         /// The sheen's lobe.
         of: Albedo,
@@ -169,8 +171,11 @@ impl Factor {
             Self::BelowCoat { weight } => {
                 format!("1 − {weight} (0.04 + 0.96 (1 − μe)^5); KHR_materials_clearcoat")
             }
+            Self::BelowSheen { of, most: 1.0 } => {
+                format!("1 − min(1, max(E(μi), E(μe))), {}; KHR_materials_sheen", name(of))
+            }
             Self::BelowSheen { of, most } => {
-                format!("min(1 − {most:.6} E(μi), 1 − {most:.6} E(μe)), {}; KHR_materials_sheen", name(of))
+                format!("1 − {most:.6} min(1, max(E(μi), E(μe))), {}; KHR_materials_sheen", name(of))
             }
         }
     }
@@ -231,8 +236,6 @@ impl Scale {
 
     /// At most so many.
     pub fn most_kinks(&self) -> usize {
-        /// E rises or falls at most so often.
-        const CROSSINGS: usize = 3;
         CROSSINGS * self.0.iter().filter(|known| matches!(known.factor, Factor::BelowSheen { .. })).count()
     }
 

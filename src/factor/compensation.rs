@@ -14,7 +14,9 @@ pub enum Compensation {
     None,
     /// As a second, diffuse lobe; reciprocal. See [`Factor::Missing`].
     KullaConty,
-    /// In the lobe's own shape; white to every view, not reciprocal. See [`Factor::Restored`].
+    /// In the lobe's own shape; white to every view, not reciprocal. See [`Factor::Restored`]. Filament's is the same:
+    /// 1 + F0 (1/dfg.y − 1) (Filament, *Physically Based Rendering in Filament*, section 4.7.2, "Energy loss in specular
+    /// reflectance"), where dfg.y = ∫ D V (n·l) dl with F = 1 at the view is the E(μe) of Turquin's 1 + F0 (1 − E)/E.
     Turquin,
 }
 
@@ -29,6 +31,12 @@ impl Compensation {
             Self::KullaConty => "kulla-conty",
             Self::Turquin => "turquin",
         }
+    }
+
+    /// What recipes may call them: their names, and `filament` for Turquin's.
+    pub fn words<'a>() -> impl Iterator<Item = (&'a str, Self)> {
+        let names = Self::ALL.into_iter().map(|kind| (kind.name(), kind));
+        names.chain([("filament", Self::Turquin)])
     }
 
     /// A few words for people.
@@ -47,7 +55,7 @@ impl Compensation {
         match self {
             Self::None => "",
             Self::KullaConty => "Kulla & Conty 2017",
-            Self::Turquin => "Turquin 2019; Filament has the same form",
+            Self::Turquin => "Turquin 2019; Filament's is the same",
         }
     }
 

@@ -29,54 +29,64 @@ impl Nodes {
     }
 
     pub fn most(&self, scale: &Scale, tolerance: f64) -> usize {
-        const KINKS: usize = 4;
         let [theta, mu, phi] = self.counts(scale, tolerance);
-        (1 + KINKS) * (theta + mu) * phi * 2
+        (2 + scale.most_kinks()) * (theta + mu) * phi * 2
     }
 
     /// Directions for a fixed cosine, which weigh cos θ dω.
     pub fn samples(&self, fixed: &Fixed, scale: &Scale, tolerance: f64) -> Vec<Sample> {
-        let [theta, steep, phi] = self.counts(scale, tolerance).map(gauss_legendre);
-        let mu = fixed.mu;
         let mut kinks = fixed.kinks.clone();
-        kinks.extend(self.kinked.then_some(mu));
-        let panels = |[low, high]: [f64; 2]| {
-            let mut ends = vec![low];
-            ends.extend(kinks.iter().copied().filter(|&kink| low < kink && kink < high));
-            ends.push(high);
-            ends.sort_by(f64::total_cmp);
-            ends
-        };
-        let mut directions = Vec::new();
-        for ends in panels([SPLIT, 1.0]).windows(2) {
-            // θ falls as μ rises.
-            let [from, to] = [ends[1].acos(), ends[0].acos()];
-            directions.extend(theta.iter().map(|node| {
-                let (sin, cos) = (from + (to - from) * node.x).sin_cos();
-                (cos, sin, (to - from) * node.weight * sin * cos)
-            }));
-        }
-        let delta = scale.turns_at();
-        for ends in panels([0.0, SPLIT]).windows(2) {
-            let [from, to] = [ends[0], ends[1]].map(|mu| (mu / delta).asinh());
-            directions.extend(steep.iter().map(|node| {
-                let u = from + (to - from) * node.x;
-                let cos = delta * u.sinh();
-                (cos, ((1.0 - cos) * (1.0 + cos)).sqrt(), (to - from) * node.weight * cos * delta * u.cosh())
-            }));
-        }
-        let azimuths: Vec<_> = if self.kinked {
-            [0.0, FRAC_PI_2].into_iter().flat_map(|start| turn(&phi, start, FRAC_PI_2)).collect()
-        } else {
-            turn(&phi, 0.0, PI).collect()
-        };
-        let sin = fixed.sin();
-        let sample = |&(cos_e, sin_e, weight): &(f64, f64, f64)| {
-            let pair = Pair::of_cosines_and_sines([mu, cos_e], [sin, sin_e]);
-            azimuths.iter().map(move |&(azimuth, width)| Sample { pair, azimuth, weight: weight * width })
-        };
-        directions.iter().flat_map(sample).collect()
+        kinks.extend(self.kinked.then_some(fixed.mu));
+        directions(fixed, scale.turns_at(), &kinks, self.counts(scale, tolerance), self.kinked)
     }
+}
+
+/// Directions for a fixed cosine, which weigh cos θ dω: so many in θ, in asinh(μ/δ) and in δφ, in panels of cos θ that end at
+/// kinks, and panels of δφ that end where ωi and ωe are perpendicular in azimuth, if there is a kink.
+pub(crate) fn directions(
+    fixed: &Fixed,
+    delta: f64,
+    kinks: &[f64],
+    counts: [usize; 3],
+    kinked: bool,
+) -> Vec<Sample> {
+    let [theta, steep, phi] = counts.map(gauss_legendre);
+    let mu = fixed.mu;
+    let panels = |[low, high]: [f64; 2]| {
+        let mut ends = vec![low];
+        ends.extend(kinks.iter().copied().filter(|&kink| low < kink && kink < high));
+        ends.push(high);
+        ends.sort_by(f64::total_cmp);
+        ends
+    };
+    let mut directions = Vec::new();
+    for ends in panels([SPLIT, 1.0]).windows(2) {
+        // θ falls as μ rises.
+        let [from, to] = [ends[1].acos(), ends[0].acos()];
+        directions.extend(theta.iter().map(|node| {
+            let (sin, cos) = (from + (to - from) * node.x).sin_cos();
+            (cos, sin, (to - from) * node.weight * sin * cos)
+        }));
+    }
+    for ends in panels([0.0, SPLIT]).windows(2) {
+        let [from, to] = [ends[0], ends[1]].map(|mu| (mu / delta).asinh());
+        directions.extend(steep.iter().map(|node| {
+            let u = from + (to - from) * node.x;
+            let cos = delta * u.sinh();
+            (cos, ((1.0 - cos) * (1.0 + cos)).sqrt(), (to - from) * node.weight * cos * delta * u.cosh())
+        }));
+    }
+    let azimuths: Vec<_> = if kinked {
+        [0.0, FRAC_PI_2].into_iter().flat_map(|start| turn(&phi, start, FRAC_PI_2)).collect()
+    } else {
+        turn(&phi, 0.0, PI).collect()
+    };
+    let sin = fixed.sin();
+    let sample = |&(cos_e, sin_e, weight): &(f64, f64, f64)| {
+        let pair = Pair::of_cosines_and_sines([mu, cos_e], [sin, sin_e]);
+        azimuths.iter().map(move |&(azimuth, width)| Sample { pair, azimuth, weight: weight * width })
+    };
+    directions.iter().flat_map(sample).collect()
 }
 
 /// Azimuths δφ with their mirror images.

@@ -50,6 +50,9 @@ pub struct Microfacet {
     pub(crate) integral_f32: f64,
     /// f below which f32 has lost digits to underflow, sr⁻¹, where that is earlier than of most.
     pub(crate) faint: Option<f64>,
+    /// cos θ at which ρ(μ) is not analytic, where there is such a place between grazing and the normal; then it is not
+    /// at the normal either.
+    pub(crate) seam: Option<f64>,
     /// How many more nodes in μ its mean over directions takes than Schlick's, at a tolerance.
     pub(crate) mean_nodes: fn(&Setting, f64) -> usize,
 }
@@ -246,6 +249,7 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         rho_most: |s| N::rho_most(s) * F::BOUND,
         integral_f32: N::INTEGRAL_F32,
         faint: N::FAINT,
+        seam: N::SEAM,
         mean_nodes: F::mean_nodes,
     };
 

@@ -52,6 +52,7 @@ impl<F: Fresnel> Made<F> {
         refused: F::refused,
         mean_nodes: F::mean_nodes,
         faint: None,
+        seam: None,
         value_f32: |_| crate::plan::VALUE_F32,
         rho_most: |_| f64::INFINITY,
         integral_f32: crate::plan::INTEGRAL_F32,

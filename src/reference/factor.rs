@@ -49,7 +49,8 @@ impl Product {
                 Factor::Restored { f0, .. } => 1.0 + f0 * (1.0 / e(mu_e) - 1.0),
                 Factor::Coat { weight } => weight * fresnel,
                 Factor::BelowCoat { weight } => 1.0 - weight * fresnel,
-                Factor::BelowSheen { most, .. } => 1.0 - most * f64::max(e(mu_i), e(mu_e)),
+                // E above 1 counts as 1.
+                Factor::BelowSheen { most, .. } => 1.0 - most * f64::max(e(mu_i), e(mu_e)).min(1.0),
             }
         };
         self.factors.iter().map(one).product()

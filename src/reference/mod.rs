@@ -35,7 +35,14 @@ pub use classic::{
     ward_dur::WARD_DUR,
 };
 pub use diffuse::{
-    burley::BURLEY, eon::EON, frostbite::FROSTBITE, fujii::FUJII, gltf::GLTF_DIFFUSE, lambert::LAMBERT,
+    burley::BURLEY,
+    disney::{DISNEY_SHEEN, DISNEY_SUBSURFACE},
+    eon::EON,
+    frostbite::FROSTBITE,
+    fujii::FUJII,
+    gltf::GLTF_DIFFUSE,
+    gltf_oren_nayar::GLTF_OREN_NAYAR,
+    lambert::LAMBERT,
     oren_nayar::OREN_NAYAR,
 };
 pub use directions::{Angles, MIN_MU};

@@ -50,6 +50,11 @@ impl Input {
         self.term(false, true)
     }
 
+    /// max(x)
+    pub fn max(&self) -> Formula {
+        self.term(true, false)
+    }
+
     /// 1 − max(x)
     pub fn rest_of_max(&self) -> Formula {
         self.term(true, true)

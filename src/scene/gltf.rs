@@ -9,6 +9,7 @@
 
 mod extensions;
 mod file;
+mod ktx2;
 mod layers;
 mod source;
 mod texels;

@@ -1,11 +1,12 @@
 //! Recipes: materials and tables written by hand, in TOML. The README documents the format.
 
+mod disney;
 mod document;
 
 use super::{Distribution, Material, MaterialLobe, Scene, SubjectRequest, TableRequest, Weights};
 use crate::axis::{Axis, MAX_COUNT, Mapping, Positions, Variable};
 use crate::error::{Error, Result};
-use crate::factor::Compensation;
+use crate::factor::{Albedo, Compensation, Factor};
 use crate::models::{self, ALPHA_MIN_VALUE, Component, Integral, MODELS, Model, Shape};
 use crate::plan::{MAX_GAUSS, MAX_GRID, MAX_SAMPLES, Rule};
 use crate::quantity::{Evaluation, QUANTITIES};
@@ -55,13 +56,45 @@ fn material(item: Item) -> Result<Material> {
     if name.trim().is_empty() || name.contains(char::is_control) {
         return Err(item.refuse("a material needs a name that can be printed"));
     }
-    let lobes = item.table(&["lobes"])?.require("lobes")?;
-    let items = lobes.items()?;
-    if items.is_empty() {
-        return Err(lobes.refuse("the list is empty; give at least one { model = …, … }"));
+    let fields = item.table(&["lobes", "disney", "sheen"])?;
+    let mut lobes = match (fields.get("lobes"), fields.get("disney")) {
+        (Some(_), Some(item)) => return Err(item.refuse("lobes are given too; keep one of them")),
+        (None, Some(item)) => disney::lobes(item)?,
+        _ => {
+            let lobes = fields.require("lobes")?;
+            let items = lobes.items()?;
+            if items.is_empty() {
+                return Err(lobes.refuse("the list is empty; give at least one { model = …, … }"));
+            }
+            items.into_iter().map(lobe).collect::<Result<Vec<_>>>()?
+        }
+    };
+    if let Some(item) = fields.get("sheen") {
+        sheen(item, &mut lobes)?;
     }
-    let lobes = items.into_iter().map(lobe).collect::<Result<_>>()?;
     Ok(Material { name, lobes, metallic: None, base_color: None })
+}
+
+/// `sheen = { color = [0.9, 0.8, 0.7], roughness = 0.5 }` upon the lobes: as KHR_materials_sheen has it.
+fn sheen(item: Item, lobes: &mut Vec<MaterialLobe>) -> Result<()> {
+    let fields = item.table(&["color", "roughness"])?;
+    let color = channels(fields.require("color")?, [0.0, 1.0])?;
+    let roughness = fields.require("roughness")?.number_in([0.0, 1.0])?;
+    let model = models::find("charlie")?.with_terms(None, Some("none"))?;
+    let of = Albedo { model, roughness: Some(roughness), parameters: model.defaults() };
+    let most = color.into_iter().fold(0.0, f64::max);
+    for lobe in lobes.iter_mut() {
+        lobe.factors.push(Factor::BelowSheen { of: of.clone(), most });
+    }
+    lobes.push(MaterialLobe {
+        model: model.name.into(),
+        roughness: Some(Distribution::constant(roughness)),
+        parameters: Vec::new(),
+        weights: Weights::Constant([color, [0.0; 3]]),
+        compensation: Compensation::None,
+        factors: Vec::new(),
+    });
+    Ok(())
 }
 
 /// `{ model = "ggx", roughness = 0.3, masking = "smith-separable", f0 = [1.0, 0.78, 0.34] }`
@@ -127,7 +160,7 @@ fn compensation(fields: &Fields, model: &'static Model) -> Result<Compensation> 
     if !Compensation::is_for(model) {
         return Err(item.refuse(&format!("{} is no lobe of microfacets; leave this away", model.name)));
     }
-    let compensation = item.one_of(Compensation::ALL.map(|kind| (kind.name(), kind)))?;
+    let compensation = item.one_of(Compensation::words())?;
     match model.integral {
         Integral::Unbounded(why) if compensation != Compensation::None => {
             Err(item.refuse(&format!("{} has no albedo ({why}); leave this away", model.name)))

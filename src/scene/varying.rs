@@ -2,6 +2,7 @@
 
 use super::{Distribution, Formula, Material, Weights, metallic_roughness};
 use crate::error::{Error, Result};
+use crate::factor::Factor;
 use crate::models::Violation;
 
 impl Material {
@@ -59,12 +60,25 @@ impl Material {
                 lobe.weights = Weights::Constant([0, 1].map(|k| formulas[k].at(&get)));
             }
         }
+        // E of a sheen whose roughness varies is of what it is here.
+        let roughness = material.lobes.iter().map(|lobe| (lobe.model.clone(), lobe.roughness.clone()));
+        let roughness: Vec<_> = roughness.collect();
+        for factor in material.lobes.iter_mut().flat_map(|lobe| &mut lobe.factors) {
+            if let Factor::BelowSheen { of, .. } = factor {
+                let own = roughness.iter().find(|(model, _)| model == of.model.name);
+                let own = own.and_then(|(_, roughness)| roughness.as_ref());
+                of.roughness = of.roughness.or(own.map(Distribution::min));
+            }
+        }
         Ok(material)
     }
 
     /// What its format is known to break, whatever its models keep.
     pub fn violation(&self) -> Option<Violation> {
-        self.metallic.map(|_| metallic_roughness::energy(self))
+        match self.metallic {
+            Some(_) => Some(metallic_roughness::energy(self)),
+            None => metallic_roughness::of_models(self),
+        }
     }
 
     /// The formulas of weights that textures decide.

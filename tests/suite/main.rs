@@ -12,6 +12,8 @@ mod classics;
 mod cli;
 mod compensation;
 mod diffuse;
+#[cfg(feature = "scene")]
+mod disney;
 mod embed;
 #[cfg(feature = "cli")]
 mod eval;

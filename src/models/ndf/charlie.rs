@@ -56,6 +56,8 @@ impl Ndf for Charlie {
     const REFERENCE: &'static dyn reference::Ndf = &reference::Charlie;
     const SHAPE: Shape = Shape::SHEEN;
     const IS_MIRROR_AT_0: bool = false;
+    /// Where Λ's branches meet.
+    const SEAM: Option<f64> = Some(0.5);
     const VALUE_F32: f64 = CHARLIE_F32;
     const INTEGRAL_F32: f64 = crate::plan::INTEGRAL_F32 + FIT_F32;
     /// Measured, where ωi grazes: at α = 1/200, but of smith-separable, whose is at 1.

@@ -44,6 +44,8 @@ pub(crate) trait Ndf: Sized {
     const FAINT: Option<f64> = None;
     /// The maskings with which ρ_dh exceeds 1, and its bound there: none, unless Λ is not Smith's of these normals.
     const RHO_BOUNDS: &'static [(&'static str, f64)] = &[];
+    /// cos θ at which ρ(μ) is not analytic, if there is such a place between grazing and the normal.
+    const SEAM: Option<f64> = None;
     /// Where ρ(μ, α) is not analytic, if that was measured.
     const BRANCHES: Option<Branches> = None;
 

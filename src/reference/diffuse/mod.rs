@@ -1,10 +1,12 @@
 //! Diffuse lobes.
 
 pub(super) mod burley;
+pub(super) mod disney;
 pub(super) mod eon;
 pub(super) mod frostbite;
 pub(super) mod fujii;
 pub(super) mod gltf;
+pub(super) mod gltf_oren_nayar;
 pub(super) mod lambert;
 pub(super) mod oren_nayar;
 

@@ -25,7 +25,7 @@ impl Reference for OrenNayar {
     }
 }
 
-fn value(angles: &Angles, sigma: f64) -> [f64; 2] {
+pub(super) fn value(angles: &Angles, sigma: f64) -> [f64; 2] {
     let pair = Pair::new(angles);
     let [s_i, s_e] = sines(&pair);
     let (sin_alpha, tan_beta) = (s_i.max(s_e), pair.tan2_i.min(pair.tan2_e).sqrt());

@@ -1,5 +1,6 @@
 //! What the extensions of a material mean for its BRDF.
 
+use super::texels::Channel;
 use super::{Texture, texture};
 use crate::error::{Error, Result};
 use crate::models;
@@ -18,6 +19,8 @@ pub struct Extended {
     pub strength: f64,
     pub film: Option<Film>,
     pub coat: Option<Coat>,
+    pub sheen: Option<Sheen>,
+    pub diffuse_roughness: Option<Scaled>,
     /// What of it the tables do not show.
     pub warnings: Vec<String>,
     /// What it has beside reflection.
@@ -35,9 +38,21 @@ pub struct Film {
 /// KHR_materials_clearcoat.
 pub struct Coat {
     pub factor: Input,
-    pub roughness: f64,
-    /// Its G multiplies the roughness.
-    pub texture: Option<Texture>,
+    pub roughness: Scaled,
+}
+
+/// KHR_materials_sheen.
+pub struct Sheen {
+    pub color: Input,
+    pub roughness: Scaled,
+}
+
+/// A roughness that a channel of a texture may multiply.
+pub struct Scaled {
+    /// What messages call it.
+    pub name: &'static str,
+    pub factor: f64,
+    pub texture: Option<(Texture, Channel)>,
 }
 
 impl Extended {
@@ -67,6 +82,8 @@ impl Extended {
             strength: of("KHR_materials_anisotropy").anisotropy(&mut warnings)?,
             film,
             coat: of("KHR_materials_clearcoat").coat(material, &mut warnings)?,
+            sheen: of("KHR_materials_sheen").sheen()?,
+            diffuse_roughness: of("KHR_materials_diffuse_roughness").diffuse_roughness()?,
             left_out: emissive
                 .then_some(("KHR_materials_emissive_strength", "what it emits is no reflection"))
                 .into_iter()
@@ -231,8 +248,8 @@ impl Extension<'_> {
 
     fn coat(&self, material: &json::Material, warnings: &mut Vec<String>) -> Result<Option<Coat>> {
         let factor = self.strength("clearcoat", "clearcoatFactor", 0.0, "clearcoatTexture")?;
-        let roughness = self.number("clearcoatRoughnessFactor", 0.0, [0.0, 1.0])?;
-        let texture = self.texture("clearcoatRoughnessTexture")?;
+        let roughness =
+            self.scaled(["clearcoatRoughnessFactor", "clearcoatRoughnessTexture"], Channel::Green)?;
         let own = self.texture("clearcoatNormalTexture")?.map(|texture| texture.index);
         if factor.value == [0.0; 3] {
             return Ok(None);
@@ -243,7 +260,26 @@ impl Extension<'_> {
                 self.name
             ));
         }
-        Ok(Some(Coat { factor, roughness, texture }))
+        Ok(Some(Coat { factor, roughness }))
+    }
+
+    fn sheen(&self) -> Result<Option<Sheen>> {
+        let value = self.color("sheenColorFactor", 0.0, [0.0, 1.0])?;
+        let varies = self.texture("sheenColorTexture")?.is_some();
+        let roughness = self.scaled(["sheenRoughnessFactor", "sheenRoughnessTexture"], Channel::Alpha)?;
+        let color = Input { name: "sheen_color", value, least: varies.then_some(0.0) };
+        Ok((value != [0.0; 3]).then_some(Sheen { color, roughness }))
+    }
+
+    fn diffuse_roughness(&self) -> Result<Option<Scaled>> {
+        let roughness = self.scaled(["diffuseRoughnessFactor", "diffuseRoughnessTexture"], Channel::Red)?;
+        Ok((roughness.factor > 0.0).then_some(roughness))
+    }
+
+    fn scaled(&self, [factor, texture]: [&'static str; 2], channel: Channel) -> Result<Scaled> {
+        let value = self.number(factor, 0.0, [0.0, 1.0])?;
+        let texture_of = self.texture(texture)?.map(|texture| (texture, channel));
+        Ok(Scaled { name: texture, factor: value, texture: texture_of })
     }
 }
 
@@ -292,11 +328,6 @@ const UNMODELLED: &[Unmodelled] = &[
         idle: (&[], 0.0),
     },
     Unmodelled {
-        name: "KHR_materials_sheen",
-        effect: "the sheen is left out of the tables",
-        idle: (&["sheenColorFactor"], 0.0),
-    },
-    Unmodelled {
         name: "KHR_materials_transmission",
         effect: "the tables are of reflection alone, of which it takes its share",
         idle: (&["transmissionFactor"], 0.0),
@@ -312,8 +343,10 @@ const UNMODELLED: &[Unmodelled] = &[
 const MODELLED: &[&str] = &[
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
+    "KHR_materials_diffuse_roughness",
     "KHR_materials_ior",
     "KHR_materials_iridescence",
+    "KHR_materials_sheen",
     "KHR_materials_specular",
 ];
 

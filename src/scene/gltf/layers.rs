@@ -7,11 +7,14 @@
 //!
 //! S is the specular lobe with F = 1. As max F = s (1 − (1 − max F0) (1 − Fc)), what is left of light below it is
 //! `gltf_diffuse` times s (1 − max F0) and `lambert` times 1 − s: no model of their own. Transmission takes its share of
-//! that. A thin film is a lobe of its own, in the mix that its factor says. A coat is a lobe upon all that, which it dims
+//! that. A rough diffuse surface (KHR_materials_diffuse_roughness) has Oren and Nayar's lobe in place of Lambert's, which is
+//! what its text describes, σ = π/2 · roughness: linear in c, so that textures weigh it, as EON, which it mentions, is not.
+//!
+//! A sheen is Charlie's lobe upon that, which dims it by a factor. A thin film is a lobe of its own, in the mix that its factor says. A coat is a lobe upon all that, which it dims
 //! by a factor; where its strength w varies, 1 − w x = (1 − w) + w (1 − x) has formulas for both parts.
 
 use super::extensions::Extended;
-use crate::factor::{Compensation, Factor};
+use crate::factor::{Albedo, Compensation, Factor};
 use crate::models;
 use crate::scene::{Distribution, Formula, Input, MaterialLobe, Weights};
 
@@ -21,6 +24,8 @@ pub struct Layers<'a> {
     pub metallic: &'a Input,
     pub roughness: Distribution,
     pub coat_roughness: Option<Distribution>,
+    pub sheen_roughness: Option<Distribution>,
+    pub diffuse_roughness: Option<Distribution>,
     pub extended: &'a Extended,
 }
 
@@ -41,6 +46,7 @@ impl Layers<'_> {
     /// The lobes, and those that are left out.
     pub fn lobes(&self) -> (Vec<MaterialLobe>, Nothing) {
         let mut parts = self.base();
+        self.sheen(&mut parts);
         self.coat(&mut parts);
         let mut nothing = Nothing::new();
         let lobes = parts.into_iter().filter_map(|part| {
@@ -68,9 +74,9 @@ impl Layers<'_> {
             let weight = weight.times(&m.rest()).times(&c.all());
             weight.times(&transmission.rest()).times(&diffuse_transmission.rest())
         };
-        let diffuse = |model: &str, weight: Formula| Part {
-            model: model.into(),
-            roughness: None,
+        let diffuse = |smooth: &str, rough: &str, weight: Formula| Part {
+            model: (if self.diffuse_roughness.is_some() { rough } else { smooth }).into(),
+            roughness: self.diffuse_roughness.clone(),
             parameters: Vec::new(),
             weights: [below(weight), Formula::default()],
             factors: Vec::new(),
@@ -90,9 +96,10 @@ impl Layers<'_> {
             ],
             factors: Vec::new(),
         };
-        let mut parts = vec![diffuse("gltf_diffuse", f0.rest_of_max().times(&specular.all()))];
+        let mut parts =
+            vec![diffuse("gltf_diffuse", "gltf_oren_nayar", f0.rest_of_max().times(&specular.all()))];
         if !specular.rest().is_zero() {
-            parts.push(diffuse("lambert", specular.rest()));
+            parts.push(diffuse("lambert", "oren-nayar", specular.rest()));
         }
         let Some(film) = film else {
             parts.push(specular_lobe);
@@ -117,6 +124,31 @@ impl Layers<'_> {
         parts
     }
 
+    /// KHR_materials_sheen: f_sheen + base · min(1 − m E(μi), 1 − m E(μe)), m the largest channel of its colour. As that is
+    /// linear in m, a colour that varies has formulas for both parts. A roughness that varies is one that E has too: see
+    /// `Material::at`.
+    fn sheen(&self, parts: &mut Vec<Part>) {
+        let (Some(sheen), Some(roughness)) = (&self.extended.sheen, &self.sheen_roughness) else { return };
+        let model = with_fresnel("charlie", "none");
+        let Ok(charlie) = models::find(&model) else { return };
+        let constant = roughness.is_constant().then(|| roughness.min());
+        let of = Albedo { model: charlie, roughness: constant, parameters: charlie.defaults() };
+        let most = sheen.color.range()[1];
+        if sheen.color.varies() {
+            let factor = Factor::BelowSheen { of, most: 1.0 };
+            below(parts, [sheen.color.rest_of_max(), sheen.color.max()], &factor);
+        } else {
+            parts.iter_mut().for_each(|part| part.factors.push(Factor::BelowSheen { of: of.clone(), most }));
+        }
+        parts.push(Part {
+            model,
+            roughness: Some(roughness.clone()),
+            parameters: Vec::new(),
+            weights: [sheen.color.all(), Formula::default()],
+            factors: Vec::new(),
+        });
+    }
+
     /// KHR_materials_clearcoat: mix(base, F = 1 specular lobe, clearcoat · (0.04 + 0.96 (1 − μe)⁵)).
     fn coat(&self, parts: &mut Vec<Part>) {
         let (Some(coat), Some(roughness)) = (&self.extended.coat, &self.coat_roughness) else { return };
@@ -128,7 +160,7 @@ impl Layers<'_> {
             factors: vec![Factor::Coat { weight }],
         };
         if coat.factor.varies() {
-            below(parts, &coat.factor, &Factor::BelowCoat { weight: 1.0 });
+            below(parts, [coat.factor.rest(), coat.factor.all()], &Factor::BelowCoat { weight: 1.0 });
             parts.push(own(1.0, coat.factor.all()));
         } else {
             let weight = coat.factor.value[0];
@@ -156,17 +188,17 @@ impl Layers<'_> {
 
 impl Part {
     fn is_diffuse(&self) -> bool {
-        matches!(self.model.as_str(), "gltf_diffuse" | "lambert")
+        matches!(self.model.as_str(), "gltf_diffuse" | "lambert" | "gltf_oren_nayar" | "oren-nayar")
     }
 }
 
 /// What lies below a layer whose strength w varies: as it is, times 1 − w, and dimmed, times w.
-fn below(parts: &mut Vec<Part>, strength: &Input, factor: &Factor) {
-    let times = |part: &Part, by: Formula| part.weights.each_ref().map(|weight| weight.times(&by));
+fn below(parts: &mut Vec<Part>, [rest, strength]: [Formula; 2], factor: &Factor) {
+    let times = |part: &Part, by: &Formula| part.weights.each_ref().map(|weight| weight.times(by));
     let split = parts.iter().flat_map(|part| {
-        let mut dimmed = Part { weights: times(part, strength.all()), ..part.clone() };
+        let mut dimmed = Part { weights: times(part, &strength), ..part.clone() };
         dimmed.factors.push(factor.clone());
-        [Part { weights: times(part, strength.rest()), ..part.clone() }, dimmed]
+        [Part { weights: times(part, &rest), ..part.clone() }, dimmed]
     });
     *parts = split.collect();
 }

@@ -1,9 +1,9 @@
 //! A material of the file: its numbers, and the ranges that its textures leave of them.
 
-use super::extensions::Extended;
+use super::extensions::{Extended, Scaled};
 use super::file::GltfFile;
 use super::layers::Layers;
-use super::texels::Texels;
+use super::texels::{Channel, Texels};
 use super::{Texture, texture, unit};
 use crate::error::Result;
 use crate::scene::{Distribution, Input, LeftOut, Material, Scene};
@@ -50,8 +50,16 @@ impl Source {
     /// The images whose texels decide this material's ranges; none where the factors leave them no say.
     pub fn images(&self) -> impl Iterator<Item = usize> {
         let matters = self.roughness > 0.0 || self.metallic > 0.0;
-        let coat = self.extended.coat.as_ref().and_then(|coat| coat.texture);
-        self.texture.filter(|_| matters).into_iter().chain(coat).filter_map(|texture| texture.image)
+        let own = self.texture.filter(|_| matters);
+        let scaled = self.scaled().filter_map(|scaled| scaled.needs()).map(|(texture, _)| texture);
+        own.into_iter().chain(scaled).filter_map(|texture| texture.image)
+    }
+
+    /// The roughnesses of its extensions.
+    fn scaled(&self) -> impl Iterator<Item = &Scaled> {
+        let Extended { coat, sheen, diffuse_roughness, .. } = &self.extended;
+        let coat = coat.iter().map(|coat| &coat.roughness);
+        coat.chain(sheen.iter().map(|sheen| &sheen.roughness)).chain(diffuse_roughness)
     }
 
     /// What of its extensions the tables do not show.
@@ -72,7 +80,9 @@ impl Source {
                 (Distribution::constant(0.0), [0.0; 2])
             }
             Some(texture) => match texels(texture, file, images) {
-                Ok(texels) => (texels.roughness(self.roughness), texels.metallic(self.metallic)),
+                Ok(texels) => {
+                    (texels.roughness(Channel::Green, self.roughness), texels.metallic(self.metallic))
+                }
                 Err(why) => {
                     let ranges = format!(
                         "roughness is taken over all of [0, {}] and metalness over [0, {}]",
@@ -83,24 +93,29 @@ impl Source {
                 }
             },
         };
-        let coat_roughness = self.extended.coat.as_ref().map(|coat| match coat.texture {
-            None => Distribution::constant(coat.roughness),
-            Some(_) if coat.roughness == 0.0 => Distribution::constant(0.0),
-            Some(texture) => match texels(texture, file, images) {
-                Ok(texels) => texels.roughness(coat.roughness),
+        let mut scaled = |what: &str, scaled: &Scaled| match scaled.needs() {
+            None => Distribution::constant(scaled.factor),
+            Some((texture, channel)) => match texels(texture, file, images) {
+                Ok(texels) => texels.roughness(channel, scaled.factor),
                 Err(why) => {
-                    let ranges = format!("the coat's roughness is taken over all of [0, {}]", coat.roughness);
-                    warn("clearcoatRoughnessTexture", why, ranges);
-                    Distribution::uniform(0.0, coat.roughness)
+                    let ranges = format!("{what} is taken over all of [0, {}]", scaled.factor);
+                    warn(scaled.name, why, ranges);
+                    Distribution::uniform(0.0, scaled.factor)
                 }
             },
-        });
+        };
+        let Extended { coat, sheen, diffuse_roughness, .. } = &self.extended;
+        let coat_roughness = coat.as_ref().map(|coat| scaled("the coat's roughness", &coat.roughness));
+        let sheen_roughness = sheen.as_ref().map(|sheen| scaled("the sheen's roughness", &sheen.roughness));
+        let diffuse_roughness = diffuse_roughness.as_ref().map(|of| scaled("the diffuse roughness", of));
         let metallic = Input { name: "metallic", value: [most; 3], least: (least < most).then_some(least) };
         let layers = Layers {
             base_color: &self.base_color,
             metallic: &metallic,
             roughness,
             coat_roughness,
+            sheen_roughness,
+            diffuse_roughness,
             extended: &self.extended,
         };
         let (lobes, nothing) = layers.lobes();
@@ -121,6 +136,13 @@ impl Source {
             metallic: Some([least, most]),
             base_color: Some(self.base_color.range()),
         }
+    }
+}
+
+impl Scaled {
+    /// The texture, where the factor leaves it a say.
+    fn needs(&self) -> Option<(Texture, Channel)> {
+        self.texture.filter(|_| self.factor > 0.0)
     }
 }
 

@@ -1,0 +1,15 @@
+// Oren & Nayar 1994, the qualitative model, under the light that glTF's specular lobe leaves: (1 − Fc) with Fc of the half
+// vector, times (A + B max(0, cos(φi − φe)) sin α tan β)/π, alpha being σ.
+
+fn lobe(p: Pair, a: Azimuth, alpha: real, row: real) -> real2 {
+    let h = half_vector(p, a);
+    let s2 = alpha * alpha;
+    let b = 0.45 * s2 / (s2 + 0.09);
+    return real2(fresnel(h.c, h.one_minus_c).x * (INV_PI * (row + b * retro(p, a))), 0.0);
+}
+
+/// A = 1 − 0.5 σ²/(σ² + 0.33)
+fn lobe_row(p: Pair, alpha: real) -> real {
+    let s2 = alpha * alpha;
+    return (0.5 * s2 + 0.33) / (s2 + 0.33);
+}
