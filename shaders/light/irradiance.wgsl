@@ -158,11 +158,11 @@ fn direct(row: u32, first: u32, end: u32) -> Sums {
 
 /// The difference of two kept sums.
 fn kept(row: u32, a: u32, b: u32, axis: u32) -> vec3f {
-    let from = (row * job.kept + a) * 9u + axis;
-    let to = (row * job.kept + b) * 9u + axis;
+    let left = (row * job.kept + a) * 9u + axis;
+    let right = (row * job.kept + b) * 9u + axis;
     var d = vec3f();
     for (var c = 0u; c < 3u; c++) {
-        let difference = sums[to + c] - sums[from + c];
+        let difference = sums[right + c] - sums[left + c];
         d[c] = difference.x + difference.y;
     }
     return d;

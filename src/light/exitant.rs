@@ -287,7 +287,7 @@ type Integrand<'a> = dyn FnMut(&[Angles], &mut Vec<f32>) -> Result<()> + 'a;
 /// Cells of all views together are at most so many: 64 bytes each.
 const MOST_CELLS: usize = 1 << 22;
 /// Views that are refined together: their nodes fill a device, and fit its buffers.
-const VIEWS: usize = 64;
+const VIEWS: usize = 16;
 /// Halvings of a texel's sides.
 const DEPTH: u32 = 40;
 /// Of the spread s to the fourth, what a rule of 2 × 2 is off where L is constant; with room for what is no exponential.

@@ -62,7 +62,7 @@ impl<'a> Meridians<'a> {
     /// The integral down one meridian.
     fn along(&self, column: usize, phi: f64, normal: [f64; 3]) -> [f64; 3] {
         let (a, b) = (normal[2], normal[0] * phi.cos() + normal[1] * phi.sin());
-        let peak = b.atan2(a);
+        let peak = peak_of(a, b);
         let (low, high) = ((peak - FRAC_PI_2).max(0.0), (peak + FRAC_PI_2).min(PI));
         if low >= high {
             return [0.0; 3];
@@ -81,6 +81,12 @@ impl<'a> Meridians<'a> {
         let sums = self.sums[column * (rows + 1) + row];
         std::array::from_fn(|k| std::array::from_fn(|c| sums[k][c] + f64::from(texel[c]) * part[k]))
     }
+}
+
+/// Where A cos θ + B sin θ is largest: in (−π/2, 3π/2], so that what is above 0 in [0, π] is within a quarter turn of it.
+fn peak_of(a: f64, b: f64) -> f64 {
+    let peak = b.atan2(a);
+    if peak < -FRAC_PI_2 { peak + TAU } else { peak }
 }
 
 /// An antiderivative of cos θ sin θ.
@@ -251,7 +257,7 @@ impl Surface<'_> {
         for (x, wx) in GAUSS {
             let phi = 0.5 * (p0 + p1) + 0.5 * (p1 - p0) * x;
             // n·ω = A cos θ + B sin θ > 0 within a quarter turn of its peak.
-            let peak = (normal[0] * phi.cos() + normal[1] * phi.sin()).atan2(normal[2]);
+            let peak = peak_of(normal[2], normal[0] * phi.cos() + normal[1] * phi.sin());
             let (low, high) = (t0.max(peak - FRAC_PI_2), t1.min(peak + FRAC_PI_2));
             if low >= high {
                 continue;
