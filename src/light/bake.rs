@@ -157,9 +157,9 @@ impl Order<'_> {
         let mut off = 0.0f64;
         for (texel, &normal) in normals.iter().enumerate() {
             let by_bands = harmonics::evaluate(convolved, normal);
-            for c in 0..3 {
-                let apart = (by_bands[c] - irradiance.value(texel, c)).abs();
-                off = off.max(if total[c] > 0.0 { apart / total[c] } else { 0.0 });
+            for (c, (by_bands, total)) in by_bands.into_iter().zip(total).enumerate() {
+                let apart = (by_bands - irradiance.value(texel, c)).abs();
+                off = off.max(if total > 0.0 { apart / total } else { 0.0 });
             }
         }
         off
@@ -373,8 +373,8 @@ impl Order<'_> {
                 continue;
             }
             error.texels_checked += 1;
-            for c in 0..3 {
-                let off = (values[texel][c] - truth[c]).abs() / truth[c].max(floor).max(f64::MIN_POSITIVE);
+            for (c, (value, truth)) in values[texel].into_iter().zip(truth).enumerate() {
+                let off = (value - truth).abs() / truth.max(floor).max(f64::MIN_POSITIVE);
                 let off = if off.is_nan() { f64::INFINITY } else { off };
                 squares += off * off;
                 if error.measured_max.is_none_or(|max| off >= max) {
@@ -382,8 +382,8 @@ impl Order<'_> {
                     let at = axes.iter().zip(indices(&shape, texel));
                     error.worst = at.map(|(axis, k)| (axis.variable.name().into(), axis.values[k])).collect();
                     error.worst.insert("channel".into(), c as f64);
-                    error.worst.insert("value".into(), values[texel][c]);
-                    error.worst.insert("reference".into(), truth[c]);
+                    error.worst.insert("value".into(), value);
+                    error.worst.insert("reference".into(), truth);
                 }
             }
         }

@@ -93,12 +93,12 @@ pub fn coefficients(light: &Light) -> Coefficients {
 fn of_sky(sky: &Sky) -> Coefficients {
     let [y0, y1, _, y20, _] = normalisation();
     let mut coefficients = [[0.0; 3]; 9];
-    for c in 0..3 {
+    (0..3).for_each(|c| {
         let (a, b, g) = (sky.horizon[c], sky.zenith[c] - sky.horizon[c], sky.ground[c]);
         coefficients[0][c] = 2.0 * PI * y0 * (a + 0.5 * b + g);
         coefficients[2][c] = 2.0 * PI * y1 * (0.5 * a + b / 3.0 - 0.5 * g);
         coefficients[6][c] = 2.0 * PI * y20 * 0.25 * b;
-    }
+    });
     coefficients
 }
 

@@ -114,8 +114,8 @@ impl Prepared {
         let sums = (0..map.height()).into_par_iter().flat_map_iter(|row| {
             let mut sums = [[0.0; 3]; 3];
             let mut kept = vec![sums];
-            for column in 0..map.width() {
-                add(&mut sums, map.texel(row, column), &columns[column], step);
+            for (column, at) in columns.iter().take(map.width()).enumerate() {
+                add(&mut sums, map.texel(row, column), at, step);
                 if (column + 1) % BLOCK == 0 {
                     kept.push(sums);
                 }
@@ -277,7 +277,7 @@ fn turned([c, s]: [f64; 2], by: f64) -> [f64; 2] {
 
 /// The nodes of what is above the horizon in a cell of parameters within ±`half`: points (θ, ψ) from its middle, and
 /// their weights in the parameters' own measure. `above` gives n·ω, by which triangles are cut, and sin θ.
-pub(crate) fn cut(
+fn cut(
     half: [f64; 2],
     split: u32,
     above: &impl Fn([f64; 2]) -> [f64; 2],

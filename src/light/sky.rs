@@ -29,7 +29,8 @@ impl Disk {
     ///
     ///     E/L = ψ₀ sin² σ cos θ − sin ψ₀ sin σ cos σ sin θ + β,   cos β = cos σ / sin θ
     ///
-    /// where the horizon cuts it, and π sin² σ cos θ where all of it is above.
+    /// where the horizon cuts it, and π sin² σ cos θ where all of it is above. With R² = sin² σ − cos² θ, ψ₀ is the angle of
+    /// (−cos σ cos θ, R), β that of (cos σ, R), and sin ψ₀ sin σ sin θ = R, which keep the digits of a small disk.
     pub fn form_factor(&self, normal: [f64; 3]) -> f64 {
         let [x, y, z] = [0, 1, 2].map(|k| {
             let (i, j) = ((k + 1) % 3, (k + 2) % 3);
@@ -44,9 +45,9 @@ impl Disk {
             return 0.0;
         }
         let (s, c) = sigma.sin_cos();
-        let rim = (-(c * cos) / (s * sin)).clamp(-1.0, 1.0).acos();
-        let horizon = (c / sin).clamp(-1.0, 1.0).acos();
-        (rim * s * s * cos - rim.sin() * s * c * sin + horizon).max(0.0)
+        let root = ((s - cos) * (s + cos)).max(0.0).sqrt();
+        let (rim, horizon) = (root.atan2(-c * cos), root.atan2(c));
+        (rim * s * s * cos + (horizon - root * c)).max(0.0)
     }
 
     pub(super) fn check(&self) -> Result<()> {

@@ -29,9 +29,9 @@ impl<'a> Meridians<'a> {
             for row in 0..map.height() {
                 let texel = map.texel(row, column);
                 let [a, b] = [map.theta(row), map.theta(row + 1)];
-                for c in 0..3 {
-                    sum[0][c] += f64::from(texel[c]) * (cos_sin(b) - cos_sin(a));
-                    sum[1][c] += f64::from(texel[c]) * (sin_sin(b) - sin_sin(a));
+                let parts = [cos_sin(b) - cos_sin(a), sin_sin(b) - sin_sin(a)];
+                for (sum, part) in sum.iter_mut().zip(parts) {
+                    (0..3).for_each(|c| sum[c] += f64::from(texel[c]) * part);
                 }
                 sums.push(sum);
             }
@@ -67,12 +67,12 @@ impl<'a> Meridians<'a> {
         if low >= high {
             return [0.0; 3];
         }
-        let [from, to] = [self.from_zenith(column, low), self.from_zenith(column, high)];
+        let [from, to] = [self.down_to(column, low), self.down_to(column, high)];
         std::array::from_fn(|c| a * (to[0][c] - from[0][c]) + b * (to[1][c] - from[1][c]))
     }
 
     /// Both integrals from the zenith to θ.
-    fn from_zenith(&self, column: usize, theta: f64) -> [[f64; 3]; 2] {
+    fn down_to(&self, column: usize, theta: f64) -> [[f64; 3]; 2] {
         let rows = self.map.height();
         let row = ((theta / PI * rows as f64) as usize).min(rows - 1);
         let texel = self.map.texel(row, column);
@@ -205,7 +205,7 @@ pub fn exitant(
 }
 
 /// Of Le, what all texels together may be off.
-const SPLIT: f64 = 1e-6;
+const SPLIT: f64 = 1e-5;
 /// Quarters of quarters: to 1e-9 of a texel.
 const DEPTH: u32 = 30;
 

@@ -16,9 +16,9 @@ use std::f64::consts::{PI, TAU};
 const LIGHT: [usize; 2] = [640, 320];
 const IRRADIANCE: [usize; 2] = [160, 80];
 /// Pixels along a sphere's side.
-const SIDE: usize = 72;
-/// Of a sphere that is looked at: 8 bits show 1/256.
-const TOLERANCE: f64 = 0.03;
+const SIDE: usize = 56;
+/// Of a sphere that is looked at: single pixels may be off by so much, and most are by far less.
+const TOLERANCE: f64 = 0.1;
 /// Spheres in a picture.
 const MOST: usize = 5;
 
@@ -119,7 +119,7 @@ fn ball(
     let is_delta = |lobe: &&Lobe| lobe.model.is_delta_at(lobe.roughness.unwrap_or(0.0));
     let (deltas, rest): (Vec<_>, Vec<_>) = lobes.iter().cloned().partition(|lobe| is_delta(&lobe));
     let coarse = match light {
-        Light::Map(map) => Light::Map(map.reduced(128, 64)),
+        Light::Map(map) => Light::Map(map.reduced(64, 32)),
         light => light.clone(),
     };
     let mut pixels = vec![[f64::NAN; 3]; SIDE * SIDE];
