@@ -3,13 +3,17 @@
 //! The real basis in Cartesian form, in the order l(l+1) + m (Ramamoorthi & Hanrahan 2001, "An efficient representation for
 //! irradiance environment maps", eq. 3):
 //!
-//!     Y = 0.282095;  0.488603 (y, z, x);  1.092548 (xy, yz), 0.315392 (3z² − 1), 1.092548 xz, 0.546274 (x² − y²)
+//! ```text
+//! Y = 0.282095;  0.488603 (y, z, x);  1.092548 (xy, yz), 0.315392 (3z² − 1), 1.092548 xz, 0.546274 (x² − y²)
+//! ```
 //!
 //! L = Σ Lₖ Yₖ, Lₖ = ∫ L Yₖ dω. E(n) = Σ Âₗ Lₖ Yₖ(n) with Â = π, 2π/3, π/4 (eqs. 5, 8): the *convolved* coefficients are
 //! Âₗ Lₖ. What is left out are the bands from l = 4 on (that of l = 3 is 0): of a light of one direction and E = 1 the
 //! clamped cosine less its three bands, which is at most 3/32 where cos θ = 0 and there alone, so that
 //!
-//!     |Σ Âₗ Lₖ Yₖ(n) − E(n)| ≤ 3/32 ∫ L dω
+//! ```text
+//! |Σ Âₗ Lₖ Yₖ(n) − E(n)| ≤ 3/32 ∫ L dω
+//! ```
 //!
 //! for any light, as it is a sum of such.
 

@@ -27,7 +27,9 @@ impl Disk {
     /// by Stokes's theorem. E/L = n·½∮ ω × dω around what is above the horizon: the disk's rim, ω × dω = (sin² σ c −
     /// sin σ cos σ r(ψ)) dψ for |ψ| < ψ₀, cos ψ₀ = −cot σ cot θ, and the horizon's arc, which n sees at ½ dψ. So
     ///
-    ///     E/L = ψ₀ sin² σ cos θ − sin ψ₀ sin σ cos σ sin θ + β,   cos β = cos σ / sin θ
+    /// ```text
+    /// E/L = ψ₀ sin² σ cos θ − sin ψ₀ sin σ cos σ sin θ + β,   cos β = cos σ / sin θ
+    /// ```
     ///
     /// where the horizon cuts it, and π sin² σ cos θ where all of it is above. With R² = sin² σ − cos² θ, ψ₀ is the angle of
     /// (−cos σ cos θ, R), β that of (cos σ, R), and sin ψ₀ sin σ sin θ = R, which keep the digits of a small disk.
@@ -84,7 +86,9 @@ impl Sky {
     /// sends ½ π (1 + cos θ); and L = cos θi, about the lune's own poles, where dω = cos ψ dψ dχ, z = cos ψ cos χ and
     /// n·ω = cos ψ cos(χ − θ),
     ///
-    ///     ∫ cos³ ψ dψ ∫ cos χ cos(χ − θ) dχ over χ ∈ [θ − π/2, π/2]  =  ⅔ ((π − θ) cos θ + sin θ).
+    /// ```text
+    /// ∫ cos³ ψ dψ ∫ cos χ cos(χ − θ) dχ over χ ∈ [θ − π/2, π/2]  =  ⅔ ((π − θ) cos θ + sin θ)
+    /// ```
     pub fn irradiance(&self, normal: [f64; 3]) -> [f64; 3] {
         let (theta, _) = angles(normal);
         let (sin, cos) = theta.sin_cos();
