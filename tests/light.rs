@@ -11,12 +11,13 @@ use gonio::axis::{Axis, Variable};
 use gonio::bake::{Evaluator, Stages, Unobserved};
 use gonio::check::Check;
 use gonio::files::{Format, Provenance, verify};
+use gonio::gpu::{Kernel, compose, validate};
 use gonio::light::bake::{Order, lobes_of};
 use gonio::light::exitant::{Integrated, View, prefiltered, radiance, radiosity, split_sum};
 use gonio::light::harmonics::{TRUNCATION, coefficients, convolved, evaluate};
 use gonio::light::irradiance::in_closed_form;
 use gonio::light::{Disk, Environment, Frame, Light, Sky, direction, read};
-use gonio::plan::Lobe;
+use gonio::plan::{Lobe, Precision};
 use gonio::quadrature::gauss_legendre;
 use gonio::reference::light as reference;
 use gonio::scene::{Scene, parse_recipe};
@@ -177,6 +178,12 @@ fn the_comparison_can_fail() {
     let table = order(device(), &light, Check::All).irradiance(axes, &mut Stages::default()).unwrap();
     close(table.value(0, 0), wrong[0], 1e-5);
     assert!((table.value(0, 0) - right[0]).abs() > 1e-4 * right[0]);
+}
+
+/// What every WebGPU device takes: no f64, no extension.
+#[test]
+fn the_kernel_is_portable() {
+    validate(&compose(Kernel::Irradiance, None, 3, Precision::F32), Precision::F32).unwrap();
 }
 
 fn museum() -> Option<PathBuf> {

@@ -240,6 +240,15 @@ fn lit(args: &Args) -> Result<Option<Subject>> {
             return Err(Error::input(format!("{name}: give --material, one of {}", names.join(", "))));
         }
     };
+    // --roughness takes the place of what varies: any value within its range will do.
+    let varying = scene.material(&material)?.varying();
+    let varies = varying.iter().find(|(name, _)| name == "roughness").map(|(_, [low, _])| low.to_string());
+    let mut sets = sets;
+    if let Some(low) = varies.as_deref().filter(|_| !args.roughness.is_empty())
+        && !sets.iter().any(|(key, _)| *key == "roughness")
+    {
+        sets.push(("roughness", low));
+    }
     let scene = subject::material(scene, &material, sets)?;
     let material = scene.material(&material)?.clone();
     Ok(Some(Subject { scene, material }))
