@@ -22,12 +22,28 @@ pub enum Variable {
     PhiI,
     /// φe ∈ [0, 2π], rad: azimuth of exitance from the tangent.
     PhiE,
+    /// θn ∈ [0, π], rad: zenith angle of a surface's normal in the world.
+    ThetaN,
+    /// φn ∈ [0, 2π], rad: azimuth of a surface's normal in the world.
+    PhiN,
+    /// The index l(l+1) + m of a spherical harmonic of the first three bands.
+    Harmonic,
 }
 
 impl Variable {
     /// All variables.
-    pub const ALL: [Self; 7] =
-        [Self::Roughness, Self::Mu, Self::ThetaI, Self::ThetaE, Self::DeltaPhi, Self::PhiI, Self::PhiE];
+    pub const ALL: [Self; 10] = [
+        Self::Roughness,
+        Self::Mu,
+        Self::ThetaI,
+        Self::ThetaE,
+        Self::DeltaPhi,
+        Self::PhiI,
+        Self::PhiE,
+        Self::ThetaN,
+        Self::PhiN,
+        Self::Harmonic,
+    ];
 
     /// The name in recipes, files and manifests.
     pub fn name(self) -> &'static str {
@@ -39,6 +55,9 @@ impl Variable {
             Self::DeltaPhi => "delta_phi",
             Self::PhiI => "phi_i",
             Self::PhiE => "phi_e",
+            Self::ThetaN => "theta_n",
+            Self::PhiN => "phi_n",
+            Self::Harmonic => "harmonic",
         }
     }
 
@@ -52,14 +71,17 @@ impl Variable {
             Self::DeltaPhi => "δφ",
             Self::PhiI => "φi",
             Self::PhiE => "φe",
+            Self::ThetaN => "θn",
+            Self::PhiN => "φn",
+            Self::Harmonic => "l(l+1) + m",
         }
     }
 
     /// `rad`, or `1` for a pure number.
     pub fn unit(self) -> &'static str {
         match self {
-            Self::Roughness | Self::Mu => "1",
-            Self::ThetaI | Self::ThetaE | Self::DeltaPhi | Self::PhiI | Self::PhiE => "rad",
+            Self::Roughness | Self::Mu | Self::Harmonic => "1",
+            _ => "rad",
         }
     }
 
@@ -69,15 +91,17 @@ impl Variable {
             Self::Roughness | Self::Mu => [0.0, 1.0],
             Self::ThetaI | Self::ThetaE => [0.0, FRAC_PI_2],
             Self::DeltaPhi => [0.0, PI],
-            Self::PhiI | Self::PhiE => [0.0, TAU],
+            Self::PhiI | Self::PhiE | Self::PhiN => [0.0, TAU],
+            Self::ThetaN => [0.0, PI],
+            Self::Harmonic => [0.0, 8.0],
         }
     }
 
     /// Where samples lie when nothing is said: angles on nodes, so that the specular peak is
-    /// sampled; μ and roughness on texel centres, as samplers read them.
+    /// sampled; μ, roughness and normals on texel centres, as samplers read them.
     pub fn natural_positions(self) -> Positions {
         match self {
-            Self::Roughness | Self::Mu => Positions::Centers,
+            Self::Roughness | Self::Mu | Self::ThetaN | Self::PhiN => Positions::Centers,
             _ => Positions::Nodes,
         }
     }

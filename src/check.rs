@@ -3,7 +3,7 @@
 use crate::axis::Variable;
 use crate::error::Result;
 use crate::plan::{Lobe, TablePlan};
-use crate::points::delta_phi;
+use crate::points::{self, delta_phi};
 use crate::quantity::Evaluation;
 use crate::reference::{Angles, Product};
 use crate::table::{ErrorKind, TableError, Values, indices};
@@ -174,6 +174,18 @@ pub fn reference(table: &TablePlan, texel: usize) -> Vec<f64> {
         }
     }
     channels
+}
+
+/// f of a lobe by the reference at a pair of directions, before its weights; NaN where it has none.
+pub(crate) fn reference_of(lobe: &Lobe, angles: &points::Angles) -> [f64; 2] {
+    let Some(reference) = lobe.model.reference else { return [f64::NAN; 2] };
+    let f = reference.brdf(&angles.of_reference(), &lobe.setting_at(None)).unwrap_or([f64::NAN; 2]);
+    if lobe.factors.is_empty() {
+        return f;
+    }
+    let factor =
+        Product::new(lobe, None).map(|product| product.at(angles.theta_i.cos(), angles.theta_e.cos()));
+    f.map(|f| f * factor.unwrap_or(f64::NAN))
 }
 
 fn reference_lobe(evaluation: Evaluation, lobe: &Lobe, at: &BTreeMap<Variable, f64>) -> [f64; 2] {

@@ -49,7 +49,7 @@ pub(crate) fn promised(variable: Variable, [a, b]: [f64; 2]) -> [f64; 2] {
         Variable::Mu => [a.max(MU), b],
         Variable::Roughness => [a.max(ROUGHNESS), b],
         Variable::ThetaI | Variable::ThetaE => [a, b.min(MU.acos())],
-        Variable::DeltaPhi | Variable::PhiI | Variable::PhiE => [a, b],
+        _ => [a, b],
     }
 }
 

@@ -29,6 +29,8 @@
 //! | [`points`] | values at any list of pairs of directions, unlooked at | tables, files |
 //! | [`factor`] | what a lobe is multiplied with by the two cosines: compensation, coats, sheen | azimuths, devices |
 //! | [`mapped`] | integrals by directions that the host finds, for lobes that no kernel has a map for | where a lobe lives: the models |
+//! | [`radiometry`] | solid angles, beams, photons: SI | everything else |
+//! | [`light`] | environment maps and other lights; irradiance, harmonics, exitant radiance, radiosity | files, pictures |
 //! | [`table`], [`axis`], [`quantity`], [`storage`], [`setting`] | what a table is | where it came from |
 //! | `work`, `slopes`, `sampling`, `spread` | the rules: nodes, weights, matrices, in f64 | devices |
 //! | `interpolation`, `optimise` | what a bilinear reader gets, and the cheapest table for it | devices |
@@ -83,6 +85,7 @@ pub mod factor;
 pub mod files;
 pub mod gpu;
 mod interpolation;
+pub mod light;
 pub mod mapped;
 pub mod models;
 mod optimise;
@@ -94,6 +97,7 @@ mod portrait;
 pub mod promises;
 pub mod quadrature;
 pub mod quantity;
+pub mod radiometry;
 pub mod reference;
 mod sampling;
 pub mod scene;

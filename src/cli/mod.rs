@@ -7,6 +7,7 @@ mod devices;
 mod eval;
 mod gallery;
 mod junit;
+mod light;
 mod models;
 mod plot;
 mod subject;
@@ -44,6 +45,8 @@ enum Command {
     Gallery(gallery::Args),
     /// Measure time against error: every method at every cost
     Trade(trade::Args),
+    /// Bake what a light does: irradiance, its harmonics, what a material sends back
+    Light(Box<light::Args>),
     /// List the models and the parts that they are made of, or one in detail
     Models(models::Args),
     /// List the devices that can bake
@@ -59,6 +62,7 @@ Examples:
   gonio plot ggx --set roughness=0.1,0.3,0.6 --out ggx.png
   gonio gallery --out gallery
   gonio trade --quantity split_sum --model ggx --out trade
+  gonio light --env museum.exr --out light
   gonio models ggx
   gonio devices
 
@@ -81,6 +85,7 @@ pub fn main() -> ExitCode {
         Command::Plot(args) => plot::run(&args),
         Command::Gallery(args) => gallery::run(&args),
         Command::Trade(args) => trade::run(&args),
+        Command::Light(args) => light::run(&args),
         Command::Models(args) => models::run(&args),
         Command::Devices(args) => devices::run(&args),
     };

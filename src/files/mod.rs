@@ -11,6 +11,8 @@ mod exr;
 #[cfg(feature = "cli")]
 mod labels;
 #[cfg(feature = "cli")]
+mod light;
+#[cfg(feature = "cli")]
 mod list;
 mod manifest;
 mod npy;
@@ -33,6 +35,8 @@ mod tradeoff;
 
 pub(crate) use atlas::{draw_page, draw_study};
 pub use entry::TableEntry;
+#[cfg(feature = "cli")]
+pub(crate) use light::{Ball, Sheet, draw as draw_light};
 #[cfg(feature = "cli")]
 pub(crate) use list::List;
 pub(crate) use manifest::hash;

@@ -42,6 +42,8 @@ pub enum Kernel {
     AddSum,
     /// Texels of a texture.
     Pack,
+    /// Irradiance of an environment map.
+    Irradiance,
     /// Nothing but stores.
     Fill,
     /// Nothing but arithmetic.
@@ -137,13 +139,14 @@ impl Kernel {
             (Self::Pack, _) => &[part!("kernel/pack")],
             (Self::Fill, _) => &[part!("probe/fill")],
             (Self::MultiplyAdd, _) => &[part!("probe/multiply_add")],
+            (Self::Irradiance, _) => &[part!("light/irradiance")],
             (Self::Canary, _) => &[part!("probe/canary")],
         }
     }
 
     /// Whether it knows no job, model or precision: its file is all of it.
     fn is_plain(self) -> bool {
-        matches!(self, Self::Pack | Self::Fill | Self::MultiplyAdd | Self::Canary)
+        matches!(self, Self::Irradiance | Self::Pack | Self::Fill | Self::MultiplyAdd | Self::Canary)
     }
 }
 

@@ -8,6 +8,7 @@ mod canary;
 mod compose;
 mod device;
 mod evaluate;
+mod light;
 mod loops;
 mod measure;
 mod points;

@@ -14,6 +14,7 @@ mod diffuse;
 mod directions;
 mod factor;
 mod fresnel;
+pub mod light;
 mod masking;
 mod microfacet;
 mod mirror;

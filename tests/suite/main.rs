@@ -24,12 +24,14 @@ mod files;
 mod fresnel;
 mod hostile;
 mod integrals;
+mod light;
 mod mirror_limit;
 mod ndfs;
 mod parts;
 mod plans;
 #[cfg(feature = "cli")]
 mod plot;
+mod radiometry;
 #[cfg(feature = "scene")]
 mod scenes;
 #[cfg(feature = "cli")]

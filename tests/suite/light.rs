@@ -1,0 +1,569 @@
+//! Light: closed forms, maps against the reference, and the equations that define what a BRDF does to light.
+//!
+//! The numbers of equations are those of the lecture notes that the project began from, as its design paraphrases them:
+//! (8) reciprocity, (9) energy, (11) outgoing radiance, (12) radiosity, (13) the ideal mirror. Which number belongs to
+//! which is inferred from their order there.
+
+use crate::common::{device, evaluators, golden, listed, nodes};
+use gonio::axis::{Axis, Variable};
+use gonio::bake::{Evaluator, Stages, Unobserved};
+use gonio::check::Check;
+use gonio::files::{Format, Provenance, verify};
+use gonio::gpu::{Kernel, compose, validate};
+use gonio::light::bake::{Order, lobes_of};
+use gonio::light::exitant::{Integrated, View, prefiltered, radiance, radiosity, split_sum};
+use gonio::light::harmonics::{TRUNCATION, coefficients, convolved, evaluate};
+use gonio::light::irradiance::in_closed_form;
+use gonio::light::{Disk, Environment, Frame, Light, Sky, direction, read};
+use gonio::plan::{Lobe, Precision};
+use gonio::quadrature::gauss_legendre;
+use gonio::reference::light as reference;
+use gonio::scene::{Scene, parse_recipe};
+use gonio::table::Table;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn close(a: f64, b: f64, relative: f64) {
+    assert!((a - b).abs() <= relative * b.abs(), "{a} is not {b} to {relative:e}");
+}
+
+fn close3(a: [f64; 3], b: [f64; 3], relative: f64) {
+    a.into_iter().zip(b).for_each(|(a, b)| close(a, b, relative));
+}
+
+/// Normals all over the sphere, and the extremes.
+fn normals() -> Vec<[f64; 3]> {
+    let spread = golden(40, 0.2).into_iter().zip(golden(40, 0.7)).enumerate();
+    let spread = spread.map(|(k, (u, _))| direction((1.0 - 2.0 * u).acos(), 2.4 * k as f64));
+    let extremes =
+        [[0.0, 0.0], [PI, 0.0], [FRAC_PI_2, 0.0], [FRAC_PI_2, 1.0], [1e-7, 2.0], [FRAC_PI_2 - 1e-9, PI]];
+    spread.chain(extremes.map(|[t, p]| direction(t, p))).collect()
+}
+
+/// A sky with a sun of four texels, 10⁵ brighter.
+fn sun_and_sky(width: usize, height: usize) -> Environment {
+    let texel = |row: usize, column: usize| {
+        let sky = [0.3, 0.5, 1.0].map(|x: f32| x * (1.0 + (row as f32 * 0.3).sin() * 0.5));
+        let in_sun = row / 2 == height / 8 && column / 2 == width / 5;
+        if in_sun { [1e5, 0.9e5, 0.7e5] } else { sky }
+    };
+    let texels = (0..height).flat_map(|row| (0..width).map(move |column| texel(row, column))).collect();
+    Environment::new(width, height, texels).unwrap().rotated(0.4)
+}
+
+fn order<'a>(evaluator: &'a Evaluator, light: &'a Light, check: Check) -> Order<'a> {
+    Order { evaluator, light, name: "test", tolerance: 1e-4, check, observer: &Unobserved }
+}
+
+fn grid(rows: usize, columns: usize) -> [Axis; 2] {
+    [Axis::natural(Variable::ThetaN, rows).unwrap(), Axis::natural(Variable::PhiN, columns).unwrap()]
+}
+
+fn scene(lobe: &str) -> Scene {
+    let text = format!("[materials.m]\nlobes = [{{ {lobe} }}]\n");
+    parse_recipe(Path::new("test.toml"), text.as_bytes()).unwrap()
+}
+
+fn lobes(lobe: &str) -> Vec<Lobe> {
+    lobes_of(scene(lobe).material("m").unwrap(), None).unwrap()
+}
+
+fn le(
+    evaluator: &Evaluator,
+    lobes: &[Lobe],
+    light: &Light,
+    views: &[View],
+    tolerance: f64,
+) -> Vec<Integrated> {
+    radiance(evaluator, lobes, light, views, tolerance, &Unobserved).unwrap()
+}
+
+/// E = πL, whatever the normal.
+#[test]
+fn a_constant_light_gives_pi() {
+    let light = Light::Constant([1.0, 2.0, 0.5]);
+    for normal in normals() {
+        let e = in_closed_form(&light, normal).unwrap();
+        close3(e, [PI, 2.0 * PI, 0.5 * PI], 1e-15);
+    }
+    // As a map it is integrated: what the horizon's cut costs falls with the square of the cells, 5e-6 with 64 columns.
+    let map = Light::Map(Environment::new(1, 1, vec![[1.0, 2.0, 0.5]]).unwrap());
+    for evaluator in evaluators() {
+        let table =
+            order(evaluator, &map, Check::All).irradiance(grid(8, 8), &mut Stages::default()).unwrap();
+        for texel in 0..table.texels() {
+            let e = std::array::from_fn(|c| table.value(texel, c));
+            close3(e, [PI, 2.0 * PI, 0.5 * PI], 3e-6);
+        }
+    }
+}
+
+/// E = π L sin² σ cos θ while all of it is above the horizon, and by the definition where the horizon cuts it.
+#[test]
+fn a_disk_is_in_closed_form() {
+    for sigma in [1e-4, 4.65e-3, 0.3, 1.2] {
+        for theta in [0.0, 0.2, 0.8, 1.3, 1.5, FRAC_PI_2, 1.7, 2.5] {
+            let disk = Disk { direction: direction(0.9, 2.0), radius: sigma, radiance: [3.0; 3] };
+            let light = Light::Disk(disk);
+            let towards = Frame::new(0.9, 2.0).to_world(direction(theta, 0.7));
+            let e = in_closed_form(&light, towards).unwrap()[0];
+            if theta + sigma < FRAC_PI_2 {
+                close(e, 3.0 * PI * sigma.sin().powi(2) * theta.cos(), 1e-9);
+            }
+            let truth = reference::irradiance(&light, towards)[0];
+            let most = 3.0 * PI * sigma.sin().powi(2);
+            // What an arc cosine near its end leaves of a small disk at the horizon.
+            assert!((e - truth).abs() < 1e-6 * most, "σ = {sigma}, θ = {theta}: {e}, {truth}");
+        }
+    }
+}
+
+#[test]
+fn a_sky_is_in_closed_form() {
+    let sky = Sky { zenith: [2.0, 1.0, 0.5], horizon: [0.5, 3.0, 0.5], ground: [0.1, 0.2, 0.7] };
+    for normal in normals() {
+        let e = in_closed_form(&Light::Sky(sky), normal).unwrap();
+        close3(e, reference::irradiance(&Light::Sky(sky), normal), 1e-9);
+    }
+    close(in_closed_form(&Light::Sky(sky), [0.0, 0.0, 1.0]).unwrap()[0], PI * 0.5 + TAU * 1.5 / 3.0, 1e-14);
+}
+
+#[test]
+fn a_sun_and_a_sky_keep_their_energy() {
+    let map = sun_and_sky(128, 64);
+    let light = Light::Map(map.clone());
+    for evaluator in evaluators() {
+        let table =
+            order(evaluator, &light, Check::All).irradiance(grid(16, 16), &mut Stages::default()).unwrap();
+        let off = table.error.measured_max.unwrap();
+        println!("{}: {off:.1e}, estimate {:?}", table.precision, table.error.estimate);
+        assert!(off < 1e-4, "{:?}", table.error);
+    }
+    // E(n) − E(−n) = n·∫ L ω dω: the sun's share of it is the map's own sum.
+    let mut vector = [0.0; 3];
+    for row in 0..64 {
+        for column in 0..128 {
+            let cell = map.cell(row, column).vector();
+            (0..3).for_each(|k| vector[k] += f64::from(map.texel(row, column)[0]) * cell[k]);
+        }
+    }
+    let one = |t: f64, p: f64| {
+        let axes = [listed(Variable::ThetaN, &[t]), listed(Variable::PhiN, &[p.rem_euclid(TAU)])];
+        order(device(), &light, Check::Sample(0))
+            .irradiance(axes, &mut Stages::default())
+            .unwrap()
+            .value(0, 0)
+    };
+    for (t, p) in [(0.3, 1.0), (1.0, 4.0), (1.5, 2.0)] {
+        let n = direction(t, p);
+        let net = one(t, p) - one(PI - t, p + PI);
+        let truth: f64 = (0..3).map(|k| n[k] * vector[k]).sum();
+        assert!((net - truth).abs() < 1e-4 * truth.abs().max(1.0), "{net}, {truth}");
+    }
+}
+
+/// The comparer sees a map that is turned by a hundredth of a radian.
+#[test]
+fn the_comparison_can_fail() {
+    let map = sun_and_sky(128, 64);
+    let right = reference::Meridians::new(&map).irradiance(direction(1.0, 1.0));
+    let turned = map.clone().rotated(1e-2);
+    let wrong = reference::Meridians::new(&turned).irradiance(direction(1.0, 1.0));
+    assert!((right[0] - wrong[0]).abs() > 1e-4 * right[0]);
+    let light = Light::Map(turned);
+    let axes = [listed(Variable::ThetaN, &[1.0]), listed(Variable::PhiN, &[1.0])];
+    let table = order(device(), &light, Check::All).irradiance(axes, &mut Stages::default()).unwrap();
+    close(table.value(0, 0), wrong[0], 1e-5);
+    assert!((table.value(0, 0) - right[0]).abs() > 1e-4 * right[0]);
+}
+
+/// What every WebGPU device takes: no f64, no extension.
+#[test]
+fn the_kernel_is_portable() {
+    validate(&compose(Kernel::Irradiance, None, 3, Precision::F32), Precision::F32).unwrap();
+}
+
+fn museum() -> Option<PathBuf> {
+    let data = std::env::var_os("GONIO_DATA").map(PathBuf::from);
+    let data = data.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data"));
+    let museum = data.join("env/museum.exr");
+    if !museum.exists() {
+        eprintln!("NOT TESTED: {} is not there; set GONIO_DATA to the folder of env/", museum.display());
+        return None;
+    }
+    Some(museum)
+}
+
+/// A real map: 64 × 32 normals within 1e-4, and its harmonics within their known truncation.
+#[test]
+fn a_museum_lights_as_the_reference_says() {
+    let Some(path) = museum() else { return };
+    let (map, _) = read(&path, false).unwrap();
+    assert_eq!((map.width(), map.height()), (512, 256));
+    let light = Light::Map(map);
+    let order = order(device(), &light, Check::Sample(256));
+    let table = order.irradiance(grid(32, 64), &mut Stages::default()).unwrap();
+    println!("measured {:?}, estimate {:?}", table.error.measured_max, table.error.estimate);
+    assert!(
+        table.error.texels_checked >= 256 && table.error.measured_max.unwrap() < 1e-4,
+        "{:?}",
+        table.error
+    );
+    assert!(table.error.estimate.unwrap() < 1e-4, "{:?}", table.error);
+    order.within_tolerance(&table).unwrap();
+    let (_, off) = order.harmonics(&table).unwrap();
+    println!("three bands miss E by {off:.4} of ∫ L dω");
+    assert!(off > 1e-3 && off < TRUNCATION, "{off}");
+}
+
+#[test]
+fn harmonics_of_a_direction_miss_by_what_truncation_says() {
+    let sun = Light::Directional { direction: direction(0.7, 2.0), irradiance: [1.0; 3] };
+    let e = convolved(&coefficients(&sun));
+    // At x = cos θ the three bands are ¼ + x/2 + (5/32)(3x² − 1).
+    for theta in [0.0f64, 0.5, FRAC_PI_2, 2.0, PI] {
+        let x = theta.cos();
+        let normal = Frame::new(0.7, 2.0).to_world(direction(theta, 0.3));
+        let bands = 0.25 + 0.5 * x + 5.0 / 32.0 * (3.0 * x * x - 1.0);
+        assert!((evaluate(&e, normal)[0] - bands).abs() < 1e-12);
+        assert!((bands - x.max(0.0)).abs() <= TRUNCATION + 1e-15);
+    }
+}
+
+/// A map of what a disk, a sky or a constant is has their coefficients, as far as its texels go.
+#[test]
+fn harmonics_of_a_map_are_those_of_what_it_shows() {
+    let sky = Sky { zenith: [2.0, 1.0, 0.5], horizon: [0.5; 3], ground: [0.1; 3] };
+    let disk = Disk { direction: direction(1.0, 2.5), radius: 0.6, radiance: [2.0; 3] };
+    for light in [Light::Sky(sky), Light::Disk(disk), Light::Constant([1.0, 0.0, 3.0])] {
+        let (width, height) = (512, 256);
+        let blank = Environment::new(width, height, vec![[0.0; 3]; width * height]).unwrap();
+        let texels = (0..width * height).map(|k| {
+            let cell = blank.cell(k / width, k % width);
+            let middle = |[a, b]: [f64; 2]| 0.5 * (a + b);
+            light.radiance(direction(middle(cell.theta), middle(cell.phi))).map(|x| x as f32)
+        });
+        let map = Light::Map(Environment::new(width, height, texels.collect()).unwrap());
+        for (a, b) in coefficients(&light).as_flattened().iter().zip(coefficients(&map).as_flattened()) {
+            // A disk's edge is a texel wide.
+            assert!((a - b).abs() < 5e-3 * 2.0, "{light:?}: {a}, {b}");
+        }
+    }
+}
+
+/// Le = albedo E/π.
+#[test]
+fn lambert_sends_back_its_share_of_the_irradiance() {
+    let light = Light::Map(sun_and_sky(64, 32));
+    let frame = Frame::new(0.5, 1.0);
+    let view = View { frame, theta_e: 0.8, phi_e: 2.0 };
+    let e = reference::irradiance(&light, frame.normal());
+    for evaluator in evaluators() {
+        let lit =
+            le(evaluator, &lobes("model = \"lambert\", albedo = [0.8, 0.4, 0.1]"), &light, &[view], 1e-5);
+        close3(lit[0].value, [0.8, 0.4, 0.1].map(|a: f64| a / PI).zip3(e), 2e-5);
+    }
+    // Of lights in closed form it is exact.
+    let light = Light::Disk(Disk { direction: direction(0.3, 1.0), radius: 0.2, radiance: [5.0; 3] });
+    let lit = le(device(), &lobes("model = \"lambert\", albedo = 0.5"), &light, &[view], 1e-5);
+    let e = in_closed_form(&light, frame.normal()).unwrap();
+    close3(lit[0].value, e.map(|e| 0.5 * e / PI), 1e-6);
+}
+
+trait Zip3 {
+    fn zip3(self, other: [f64; 3]) -> [f64; 3];
+}
+
+impl Zip3 for [f64; 3] {
+    fn zip3(self, other: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|c| self[c] * other[c])
+    }
+}
+
+/// (13): f = k δ(θi − θe) δ(φi + π − φe) with k = 1/(cos θi sin θi) sends the map back as it is, each direction that
+/// which is opposite in azimuth, for ∫ f cos θi sin θi dθi dφi of it is 1.
+#[test]
+fn equation_13_a_mirror_returns_the_map() {
+    let map = sun_and_sky(64, 32);
+    let light = Light::Map(map.clone());
+    let mirror = lobes("model = \"mirror\", f0 = 1.0, f90 = 1.0");
+    let frame = Frame::new(0.6, 2.0);
+    let views: Vec<_> = golden(200, 0.3)
+        .into_iter()
+        .enumerate()
+        .map(|(k, u)| View { frame, theta_e: u * FRAC_PI_2, phi_e: 0.7 * k as f64 })
+        .collect();
+    for (one, view) in le(device(), &mirror, &light, &views, 1e-4).iter().zip(&views) {
+        let from = frame.to_world(direction(view.theta_e, view.phi_e + PI));
+        close3(one.value, map.radiance(from), 1e-6);
+    }
+}
+
+/// (8): f(ωi, ωe) = f(ωe, ωi), as light shows it: what a directional light of irradiance 1 from ωi sends to ωe, over
+/// cos θi, is what the same from ωe sends to ωi, over cos θe.
+#[test]
+fn equation_8_light_and_eye_may_change_places() {
+    let frame = Frame::new(1.1, 0.4);
+    for lobe in [
+        "model = \"ggx\", roughness = 0.4, f0 = [0.9, 0.6, 0.3]",
+        "model = \"lambert\", albedo = 0.5",
+        "model = \"burley\", roughness = 0.6, albedo = 0.7",
+        "model = \"charlie\", roughness = 0.5",
+    ] {
+        let lobes = lobes(lobe);
+        let f = |i: (f64, f64), e: (f64, f64)| {
+            let light =
+                Light::Directional { direction: frame.to_world(direction(i.0, i.1)), irradiance: [1.0; 3] };
+            let view = View { frame, theta_e: e.0, phi_e: e.1 };
+            le(device(), &lobes, &light, &[view], 1e-4)[0].value.map(|l| l / i.0.cos())
+        };
+        for (i, e) in [((0.3, 0.1), (1.2, 2.0)), ((0.7, 3.0), (0.7, 0.0)), ((1.4, 5.0), (0.05, 1.0))] {
+            close3(f(i, e), f(e, i), 1e-5);
+        }
+    }
+}
+
+/// (9): ∫ f cos θe dωe ≤ 1, so that no light is sent back more than came, M ≤ E: under a sun too.
+#[test]
+fn equation_9_no_more_leaves_than_came() {
+    let light = Light::Map(sun_and_sky(64, 32));
+    for lobe in ["model = \"ggx\", roughness = 0.5, f0 = 1.0", "model = \"lambert\", albedo = 1.0"] {
+        let scene = scene(lobe);
+        let order = order(device(), &light, Check::Sample(0));
+        let order = Order { tolerance: 1e-3, ..order };
+        let [_, share] = order.radiosity(&scene, "m", grid(3, 4), &mut Stages::default()).unwrap();
+        for texel in 0..share.texels() {
+            let share = share.value(texel, 0);
+            assert!(share > 0.5 && share <= 1.0 + 1e-3, "{lobe}: {share}");
+        }
+    }
+}
+
+/// (11): Le = ∫ f Li cos θi dωi, against the reference, of lobes from wide to far narrower than a texel.
+#[test]
+fn equation_11_outgoing_radiance() {
+    let map = sun_and_sky(64, 32);
+    let light = Light::Map(map.clone());
+    let frame = Frame::new(0.4, 1.2);
+    // One of them sees the sun in its mirror.
+    let sun = map.cell(8, 25);
+    let local =
+        frame.to_local(direction(0.5 * (sun.theta[0] + sun.theta[1]), 0.5 * (sun.phi[0] + sun.phi[1])));
+    let at_sun = View { frame, theta_e: local[2].acos(), phi_e: local[1].atan2(local[0]) + PI };
+    let views = [at_sun, View { frame, theta_e: 0.3, phi_e: 5.0 }, View { frame, theta_e: 1.3, phi_e: 1.0 }];
+    for roughness in [0.03, 0.3, 0.9] {
+        let text = format!("model = \"ggx\", roughness = {roughness}, f0 = [0.9, 0.5, 0.04]");
+        let lobes = lobes(&text);
+        let axes = |view: &View| {
+            [
+                listed(Variable::ThetaN, &[0.4]),
+                listed(Variable::PhiN, &[1.2]),
+                listed(Variable::ThetaE, &[view.theta_e]),
+                listed(Variable::PhiE, &[view.phi_e.rem_euclid(TAU)]),
+            ]
+        };
+        for view in &views {
+            let one = scene(&text);
+            let order = Order { tolerance: 1e-3, ..order(device(), &light, Check::All) };
+            let [exact, _] =
+                order.radiance(one.material("m").unwrap(), &[], axes(view), &mut Stages::default()).unwrap();
+            println!("roughness {roughness}: {:?} {:?}", exact.error.measured_max, exact.error.estimate);
+            order.within_tolerance(&exact).unwrap();
+        }
+        // And the CPU's twins say the same.
+        let [a, b] = evaluators().map(|evaluator| le(evaluator, &lobes, &light, &views, 1e-3));
+        for (a, b) in a.iter().zip(&b) {
+            close3(a.value, b.value, 2e-3);
+        }
+    }
+}
+
+/// (12): M = ∫ Le cos θe dωe, by Gauss–Legendre over ωe of Le under a sky; and M = ρ_hh E where the sky is uniform.
+#[test]
+fn equation_12_radiosity() {
+    let text = "model = \"ggx\", roughness = 0.8, f0 = 0.6";
+    let (one, lobes) = (scene(text), lobes(text));
+    let frame = Frame::new(0.0, 0.0);
+    let light = Light::Sky(Sky { zenith: [2.0; 3], horizon: [0.5; 3], ground: [0.0; 3] });
+    let m = radiosity(device(), (&one, "m"), &light, &[frame], 1e-4, &Unobserved).unwrap()[0].value[0];
+    // About the zenith Le is the same for all φe: M = 2π ∫ Le μ dμ.
+    let rule = gauss_legendre(12);
+    let view = |mu: f64| View { frame, theta_e: mu.acos(), phi_e: 0.0 };
+    let views: Vec<_> = rule.iter().map(|node| view(node.x)).collect();
+    let found = le(device(), &lobes, &light, &views, 1e-4);
+    let sum: f64 = rule.iter().zip(&found).map(|(node, le)| node.weight * node.x * le.value[0]).sum();
+    close(m, TAU * sum, 3e-4);
+
+    let uniform = Light::Constant([2.0; 3]);
+    let m = radiosity(device(), (&one, "m"), &uniform, &[frame], 1e-4, &Unobserved).unwrap()[0].value[0];
+    let e = in_closed_form(&uniform, [0.0, 0.0, 1.0]).unwrap()[0];
+    let ggx = &lobes[0];
+    let [a, b] = ggx.model.reference.unwrap().rho_hh(&ggx.setting_at(None));
+    close(m / e, ggx.weights[0][0] * a + ggx.weights[0][1] * b, 1e-6);
+}
+
+/// LD (F0·A + F90·B) is exact where nothing varies, and where the lobe is the one that LD was filtered with, n = v = r.
+#[test]
+fn the_split_sum_is_exact_where_it_should_be() {
+    let lobes = lobes("model = \"ggx\", roughness = 0.5, f0 = 0.04, f90 = 0.04");
+    let frame = Frame::new(0.5, 1.0);
+    let straight = View { frame, theta_e: 0.0, phi_e: 0.0 };
+    let slanted = View { frame, theta_e: 1.2, phi_e: 0.3 };
+    let map = Light::Map(sun_and_sky(64, 32));
+    let split =
+        |light: &Light, view| split_sum(device(), &lobes, light, &[view], 1e-4, &Unobserved).unwrap()[0];
+    let exact = |light: &Light, view| le(device(), &lobes, light, &[view], 1e-4)[0].value;
+    close3(split(&map, straight), exact(&map, straight), 5e-4);
+    let white = Light::Constant([1.0; 3]);
+    close3(split(&white, slanted), exact(&white, slanted), 5e-4);
+    // And an approximation elsewhere.
+    let [a, b] = [split(&map, slanted), exact(&map, slanted)];
+    assert!((a[0] - b[0]).abs() > 0.01 * b[0], "{a:?} {b:?}");
+    let white = prefiltered(device(), &lobes[0], &white, &[[0.0, 0.0, 1.0]], 1e-4, &Unobserved).unwrap();
+    close3(white[0], [1.0; 3], 1e-6);
+}
+
+/// An EXR file of a map: a table over normals is one.
+fn exr(dir: &Path, name: &str, width: usize, height: usize, texels: Vec<f32>) -> PathBuf {
+    let light = Light::Constant([1.0; 3]);
+    let axes = [nodes(Variable::ThetaN, height, [0.0, PI]), nodes(Variable::PhiN, width, [0.0, TAU])];
+    let table =
+        order(&Evaluator::Cpu, &light, Check::Sample(0)).irradiance(axes, &mut Stages::default()).unwrap();
+    let table = Table { values: texels.into(), ..table };
+    let path = dir.join(name);
+    std::fs::write(&path, Format::Exr.encode(&table, &Provenance::new()).unwrap()).unwrap();
+    path
+}
+
+#[test]
+fn hostile_maps_are_refused_with_their_reason() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut texels = vec![0.5f32; 16 * 8 * 3];
+    let good = exr(dir.path(), "good.exr", 16, 8, texels.clone());
+    assert_eq!(read(&good, false).unwrap().0.texel(7, 15), [0.5; 3]);
+
+    let bytes = std::fs::read(&good).unwrap();
+    let write = |name: &str, bytes: &[u8]| {
+        let path = dir.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        path
+    };
+    let refused = |path: &Path, what: &[&str]| {
+        let why = read(path, false).unwrap_err().to_string();
+        assert!(what.iter().all(|what| why.contains(what)), "{why}");
+        assert!(why.contains(path.file_name().unwrap().to_str().unwrap()), "{why}");
+    };
+    for cut in [6, 40, bytes.len() / 2, bytes.len() - 5] {
+        refused(&write("cut.exr", &bytes[..cut]), &["OpenEXR"]);
+    }
+    refused(&write("empty.exr", b""), &["empty"]);
+    refused(&write("text.exr", b"not a map"), &["neither OpenEXR nor Radiance"]);
+    refused(&dir.path().join("missing.exr"), &["cannot read"]);
+    refused(
+        &write("large.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8192 +X 16384\n"),
+        &["16384 × 8192"],
+    );
+    refused(&write("cut.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\nabc"), &["Radiance HDR"]);
+    refused(&write("none.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 0 +X 0\n"), &["none.hdr"]);
+
+    texels[(3 * 16 + 5) * 3 + 1] = f32::NAN;
+    texels[(4 * 16 + 5) * 3 + 2] = f32::INFINITY;
+    let bad = exr(dir.path(), "bad.exr", 16, 8, texels);
+    refused(&bad, &["row 3, column 5: G is NaN", "2 of 128", "--clamp"]);
+    let (map, clamped) = read(&bad, true).unwrap();
+    assert_eq!((clamped.texels, map.texel(3, 5), map.texel(4, 5)), (2, [0.5, 0.0, 0.5], [0.5; 3]));
+}
+
+/// Radiance HDR: mantissas of 8 bits and a common exponent (Ward 1991): (m + ½) 2^(e − 136), or without the half.
+#[test]
+fn radiance_hdr_is_read() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n".to_vec();
+    bytes.extend([128, 64, 32, 129, 200, 100, 50, 140]);
+    let path = dir.path().join("two.hdr");
+    std::fs::write(&path, bytes).unwrap();
+    let (map, _) = read(&path, false).unwrap();
+    assert_eq!((map.width(), map.height()), (2, 1));
+    for (texel, truth) in [(map.texel(0, 0), [1.0, 0.5, 0.25]), (map.texel(0, 1), [3200.0, 1600.0, 800.0])] {
+        for (a, b) in texel.into_iter().zip(truth) {
+            assert!((a - b).abs() <= 0.02 * b, "{texel:?}");
+        }
+    }
+}
+
+/// 16384 columns: bands of rows fit any device.
+#[test]
+fn a_map_of_16384_columns_is_integrated() {
+    let (width, height) = (16384, 8);
+    let texel = |k: usize| [1.0 + (k % width) as f32 / width as f32, 0.5, (k / width) as f32];
+    let map = Environment::new(width, height, (0..width * height).map(texel).collect()).unwrap();
+    let light = Light::Map(map);
+    let order = order(device(), &light, Check::All);
+    let table = order.irradiance(grid(3, 3), &mut Stages::default()).unwrap();
+    println!("{:?} {}", table.error.measured_max, table.rule);
+    order.within_tolerance(&table).unwrap();
+}
+
+fn gonio(args: &[&str]) -> (i32, String, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_gonio")).args(args).output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+}
+
+#[test]
+fn the_command_bakes_a_set() {
+    let dir = tempfile::tempdir().unwrap();
+    let map = exr(dir.path(), "map.exr", 16, 8, (0..16 * 8 * 3).map(|k| (k % 7) as f32).collect());
+    let map = map.to_str().unwrap();
+    for (quantity, tables) in [("irradiance", 1), ("sh", 3)] {
+        let out = dir.path().join(quantity);
+        let out_name = out.to_str().unwrap();
+        let args =
+            ["light", "--env", map, "--quantity", quantity, "--normals", "4x8", "--out", out_name, "--json"];
+        let (code, stdout, stderr) = gonio(&args);
+        assert_eq!(code, 0, "{stderr}");
+        let manifest: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+        assert_eq!(manifest["tables"].as_array().unwrap().len(), tables);
+        assert_eq!(manifest["light"]["width"], 16);
+        assert!(manifest["tables"][0]["files"]["exr"].is_string());
+        assert_eq!(verify(&out).unwrap(), Vec::<String>::new());
+        assert!(out.join("light.png").exists());
+    }
+    let out = dir.path().join("le");
+    let out_name = out.to_str().unwrap();
+    let args = [
+        "light",
+        "lambert",
+        "--set",
+        "albedo=0.5",
+        "--sky",
+        "disk:theta=0,radius=10,radiance=2",
+        "--quantity",
+        "radiance",
+        "--exits",
+        "3x1",
+        "--out",
+        out_name,
+        "--no-picture",
+        "--format",
+        "npy",
+    ];
+    let (code, stdout, stderr) = gonio(&args);
+    assert_eq!(code, 0, "{stderr}");
+    assert!(stdout.contains("radiance_split_sum"), "{stdout}");
+
+    for (args, code, what) in [
+        (vec!["light", "--out", out_name], 2, "--env"),
+        (vec!["light", "--sky", "moon", "--out", out_name], 2, "no light"),
+        (
+            vec!["light", "--sky", "constant:1", "--quantity", "radiance", "--out", out_name],
+            2,
+            "nothing is lit",
+        ),
+        (vec!["light", "--env", "/nowhere.exr", "--out", out_name], 2, "nowhere.exr"),
+    ] {
+        let (got, _, stderr) = gonio(&args);
+        assert!(got == code && stderr.contains(what), "{args:?}: {got} {stderr}");
+    }
+}
