@@ -12,8 +12,8 @@
 //!
 //! γ = 2 is GGX; 1 is Disney's clearcoat, whose glow reaches far out; 10 has Beckmann's edge, and is as if α were a third.
 //!
-//! Smith's Λ is GGX's with the same α, as Disney has it: these normals' own has no closed form. (Disney masks the clearcoat
-//! with α = 1/4 whatever its gloss; for that, `smith-correlated` of another α, there is no word here.)
+//! Smith's Λ is GGX's with the same α, as Disney has it: these normals' own has no closed form. Disney masks the clearcoat
+//! with α = 1/4 whatever its gloss, which no masking here does.
 //!
 //! Kept: finite, not negative, reciprocal; energy where γ ≥ 2. Broken below: the normals that ωe sees from grazing cover
 //! [`side`] of the surface, where Λ has α. So Smith's ρ_dh there is their ratio, which no μ exceeds: of γ = 1, (1 −
