@@ -22,12 +22,11 @@
 //! masking and v-cavity, which know nothing of Λ, keep it. Nothing bounds it with schlick-ggx, whose k vanishes with α, and
 //! with none.
 
-use super::{Ndf, charlie_map};
+use super::{Mean, Ndf, charlie_map};
 use crate::mapped::{Fixed, Sample};
 use crate::models::masking::Masking;
 use crate::models::{Shape, SlopeCounts, Term, part};
 use crate::pair::Half;
-use crate::quadrature::Node;
 use crate::reference;
 use crate::setting::Setting;
 use std::f64::consts::TAU;
@@ -98,7 +97,7 @@ impl Ndf for Charlie {
         charlie_map::most(counts, M::KINKS.of_directions)
     }
 
-    const MEANS: Option<[fn(f64) -> Vec<Node>; 2]> = Some([charlie_map::mean, charlie_map::mean_with_kinks]);
+    const MEANS: Option<[Mean; 2]> = Some([charlie_map::mean, charlie_map::mean_with_kinks]);
 
     fn counts(_mu: f64, _s: &Setting, tolerance: f64) -> [SlopeCounts; 2] {
         charlie_map::counts(tolerance)

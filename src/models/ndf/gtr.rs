@@ -12,15 +12,15 @@
 //!
 //! γ = 2 is GGX; 1 is Disney's clearcoat, whose glow reaches far out; 10 has Beckmann's edge, and is as if α were a third.
 //!
-//! Smith's Λ is GGX's with the same α, as Disney has it: these normals' own has no closed form. (Disney masks the clearcoat
-//! with α = 1/4 whatever its gloss; for that, `smith-correlated` of another α, there is no word here.)
+//! Smith's Λ is GGX's with the same α, as Disney has it: these normals' own has no closed form. Disney masks the clearcoat
+//! with α = 1/4 whatever its gloss, which no masking here does.
 //!
 //! Kept: finite, not negative, reciprocal; energy where γ ≥ 2. Broken below: the normals that ωe sees from grazing cover
 //! [`side`] of the surface, where Λ has α. So Smith's ρ_dh there is their ratio, which no μ exceeds: of γ = 1, (1 −
 //! α)/(α ln 1/α), that is 1.9 at α = 0.3, 3.9 at 0.1, 21 at 0.01 and 145 at 0.001; of γ = 3/2, 1.4, 1.9, 3.2 and 4.6.
 //! Above γ = 2 light is lost. α → 0 is not joined to the mirror, as γ = 1 reaches it by a logarithm alone.
 
-use super::{Map, Ndf};
+use super::{Map, Mean, Ndf};
 use crate::mapped::{Fixed, Sample};
 use crate::models::half_vector::{self, HorizonTurn};
 use crate::models::masking::Masking;
@@ -122,7 +122,7 @@ impl Ndf for Gtr {
         2 * half_vector::most(&M::KINKS, counts)
     }
 
-    const MEANS: Option<[fn(f64) -> Vec<Node>; 2]> = Some([mean, half_vector::mean]);
+    const MEANS: Option<[Mean; 2]> = Some([mean, half_vector::mean]);
 
     /// Measured for α from 1/1000 to 1 and γ from 1 to 10, worst over μ ∈ [2⁻²⁴, 1]: each count alone leaves less than a third
     /// of the tolerance. Nodes in v fall by a decade of the error for each 5.5 of them; below γ = 2 all scales between

@@ -96,7 +96,7 @@ pub(crate) trait Ndf: Sized {
     }
     /// μ and weights of the mean ρ_hh, where the rule of all models does not see what is in ρ: with a smooth masking, and
     /// with one that has kinks.
-    const MEANS: Option<[fn(tolerance: f64) -> Vec<Node>; 2]> = None;
+    const MEANS: Option<[Mean; 2]> = None;
 
     /// r at which tan θm reaches `t_max`, and the map there: of one that has a map.
     fn fine_end(_t_max: f64, _: &Setting) -> f64 {
@@ -124,6 +124,9 @@ pub(crate) trait Ndf: Sized {
         [f64::NAN; 2]
     }
 }
+
+/// cos θ of directions and their weights in the mean ∫ ρ 2μ dμ, at a tolerance.
+pub(crate) type Mean = fn(tolerance: f64) -> Vec<Node>;
 
 /// A map's tan θm = p/m at r, and `weight` = w dv/dr / m, where D cos θm dωm = w dv dφ / 2π.
 pub(crate) struct Map {
