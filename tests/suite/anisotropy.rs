@@ -51,12 +51,12 @@ fn values_agree_with_the_reference() {
 /// The split sum over (μ, φ) meets every tolerance; f32 or f64, as the ratio of the α asks for.
 #[test]
 fn integrals_meet_every_tolerance() {
-    let mus = [1e-5, 1e-2, 0.2, 0.7, 1.0];
-    let phis = [0.0, 0.4, 1.2, FRAC_PI_2, 2.0];
+    let mus = [1e-5, 1e-2, 0.2, 1.0];
+    let phis = [0.0, 0.4, FRAC_PI_2, 2.0];
     for name in ["ggx-anisotropic", "beckmann-anisotropic"] {
         for setting in SETTINGS {
             let axes = vec![listed(Mu, &mus), listed(PhiI, &phis)];
-            let plan = plan(&SPLIT_SUM, model(name), &[0.0, 0.03, 0.2, 0.6, 1.0], setting, axes);
+            let plan = plan(&SPLIT_SUM, model(name), &[0.0, 0.03, 0.2, 1.0], setting, axes);
             let tried = Tried::new(plan);
             for tolerance in [1e-2, 1e-4, 1e-6] {
                 let table = tried.assert_meets(device(), tolerance, 0.0);

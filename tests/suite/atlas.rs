@@ -6,6 +6,7 @@ use gonio::atlas::{self, Page, RECIPROCITY};
 use gonio::bake::{Evaluator, Unobserved};
 use gonio::models::MODELS;
 use gonio::plan::VALUE_F32;
+use std::sync::OnceLock;
 
 /// A quarter of the default: enough for the tail to be within a tenth of that of 10⁸ values.
 const BUDGET: u64 = 1_000_000;
@@ -13,6 +14,12 @@ const BUDGET: u64 = 1_000_000;
 fn pages(evaluator: &Evaluator) -> Vec<Page> {
     let models = MODELS.into_iter().filter(|model| !model.is_delta());
     models.map(|model| atlas::measure_model(evaluator, model, BUDGET, &Unobserved).unwrap()).collect()
+}
+
+/// The device's, measured once.
+fn device_pages() -> &'static [Page] {
+    static PAGES: OnceLock<Vec<Page>> = OnceLock::new();
+    PAGES.get_or_init(|| pages(device()))
 }
 
 /// 2e-6 for α ≥ 1e-4 and 1e-5 down to 1e-6, at all angles up to and including 90°.
@@ -25,7 +32,7 @@ fn pages(evaluator: &Evaluator) -> Vec<Page> {
 /// in 10¹⁰. Below α = 1e-4 more is allowed, for devices whose divisions are off by 2.5 ULP.
 #[test]
 fn f32_is_as_near_to_f64_as_promised() {
-    for page in pages(device()) {
+    for page in device_pages() {
         for band in &page.decades {
             let worst = band.worst.as_ref().unwrap();
             println!("{} {:?}: median {:.1e}, max {:.1e}", page.subject, band.alpha, band.median, band.max);
@@ -66,7 +73,7 @@ fn the_cpu_path_rounds_once() {
 fn ggx_is_reciprocal_bit_by_bit_where_nothing_is_contracted() {
     let Evaluator::Device(opened) = device() else { unreachable!("common::device asserts it") };
     let contracts = opened.canary().unwrap().contracts;
-    for page in pages(device()) {
+    for page in device_pages() {
         for band in &page.decades {
             assert!(band.reciprocity <= RECIPROCITY, "{}: {:e}", page.subject, band.reciprocity);
             assert!(contracts || band.unequal == 0, "{}: {} values change", page.subject, band.unequal);

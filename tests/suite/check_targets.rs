@@ -300,7 +300,7 @@ mod command {
             (vec!["nowhere.gltf"], "nowhere.gltf"),
             (vec!["scene.obj"], ".gltf"),
             (vec![RECIPE, "--material", "nope"], "painted wood"),
-            (vec!["--model", "phong"], "lambert"),
+            (vec!["--model", "nope"], "lambert"),
             (vec!["--model", "ggx", "--set", "alpha"], "KEY=VALUE"),
             (vec!["--model", "ggx", "--set", "alpha=1..x"], "not a number"),
             (vec!["--model", "ggx", "--set", "alpha=1..0.1"], "lower first"),
