@@ -16,7 +16,7 @@ use std::f64::consts::{PI, TAU};
 const LIGHT: [usize; 2] = [640, 320];
 const IRRADIANCE: [usize; 2] = [160, 80];
 /// Pixels along a sphere's side; of one that only mirrors, which takes no integral, as many as are drawn.
-const SIDE: usize = 48;
+const SIDE: usize = 36;
 const MIRROR_SIDE: usize = 240;
 /// Of a sphere that is looked at: single pixels may be off by so much, and most are by far less.
 const TOLERANCE: f64 = 0.1;
