@@ -234,14 +234,14 @@ mod tests {
         }
     }
 
-    /// Unturned, the left quarter of the second row is towards −x; +x is in the middle and +y to its left.
+    /// Unturned, +x is in the middle, between columns 3 and 4, and +y to its left, between 1 and 2.
     #[test]
     fn seen_from_inside_nothing_is_mirrored() {
         let map = Environment { rotation: 0.0, ..map() };
         let column = |v: [f64; 3]| map.radiance(v)[0] % 8.0;
         assert_eq!(column(direction(1.5, 0.1)), 3.0);
         assert_eq!(column(direction(1.5, -0.1)), 4.0);
-        assert_eq!(column([0.1, 1.0, 0.0]), 1.0);
+        assert_eq!(column([0.1, 1.0, 0.0]), 2.0);
         assert_eq!(column([0.1, -1.0, 0.0]), 5.0);
     }
 

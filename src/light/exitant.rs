@@ -265,8 +265,21 @@ fn mean_albedo(evaluator: &Evaluator, scene: &Scene, material: &str) -> Result<[
     Ok(std::array::from_fn(|c| table.value(0, c)))
 }
 
-/// E of some normals, by whichever way the light has.
+/// E of some normals, by whichever way the light has; neighbours that are equal are integrated once.
 fn irradiance_of(evaluator: &Evaluator, light: &Light, normals: &[[f64; 3]]) -> Result<Vec<[f64; 3]>> {
+    let mut own: Vec<[f64; 3]> = Vec::new();
+    let mut places = Vec::with_capacity(normals.len());
+    for &normal in normals {
+        if own.last() != Some(&normal) {
+            own.push(normal);
+        }
+        places.push(own.len() - 1);
+    }
+    let found = irradiance_of_each(evaluator, light, &own)?;
+    Ok(places.into_iter().map(|place| found[place]).collect())
+}
+
+fn irradiance_of_each(evaluator: &Evaluator, light: &Light, normals: &[[f64; 3]]) -> Result<Vec<[f64; 3]>> {
     let Light::Map(map) = light else {
         let closed = |&normal: &[f64; 3]| irradiance::in_closed_form(light, normal).unwrap_or([f64::NAN; 3]);
         return Ok(normals.iter().map(closed).collect());

@@ -15,8 +15,9 @@ use std::f64::consts::{PI, TAU};
 /// Columns and rows of the light and of its irradiance, as they are drawn.
 const LIGHT: [usize; 2] = [640, 320];
 const IRRADIANCE: [usize; 2] = [160, 80];
-/// Pixels along a sphere's side.
-const SIDE: usize = 48;
+/// Pixels along a sphere's side; of one that only mirrors, which takes no integral, as many as are drawn.
+const SIDE: usize = 36;
+const MIRROR_SIDE: usize = 240;
 /// Of a sphere that is looked at: single pixels may be off by so much, and most are by far less.
 const TOLERANCE: f64 = 0.1;
 /// Spheres in a picture.
@@ -45,7 +46,8 @@ pub fn draw(
                 None => material.name.clone(),
             };
             let lobes = lobes_of(material, setting)?;
-            balls.push(Ball { label, side: SIDE, pixels: ball(&lobes, light, evaluator, observer)? });
+            let side = if lobes.iter().all(is_delta) { MIRROR_SIDE } else { SIDE };
+            balls.push(Ball { label, side, pixels: ball(&lobes, side, light, evaluator, observer)? });
         }
     }
     // What a white diffuse surface sends, in the median of its orientations, is a middle grey.
@@ -94,15 +96,16 @@ fn irradiance(light: &Light, evaluator: &Evaluator, observer: &dyn Observer) -> 
 /// of the map. Deltas show the map itself, and the rest a coarser one, which is what they blur it to anyway.
 fn ball(
     lobes: &[Lobe],
+    side: usize,
     light: &Light,
     evaluator: &Evaluator,
     observer: &dyn Observer,
 ) -> Result<Vec<[f64; 3]>> {
     let eye = [-1.0, 0.0, 0.0];
-    let middle = |k: usize| (2 * k + 1) as f64 / SIDE as f64 - 1.0;
+    let middle = |k: usize| (2 * k + 1) as f64 / side as f64 - 1.0;
     let (mut places, mut views) = (Vec::new(), Vec::new());
-    for row in 0..SIDE {
-        for column in 0..SIDE {
+    for row in 0..side {
+        for column in 0..side {
             let (right, up) = (middle(column), -middle(row));
             let towards = 1.0 - right * right - up * up;
             if towards <= 0.0 {
@@ -112,21 +115,24 @@ fn ball(
             let (theta, phi) = (right.hypot(normal[0]).atan2(up), normal[1].atan2(normal[0]));
             let frame = Frame::new(theta, phi);
             let [x, y, z] = frame.to_local(eye);
-            places.push(row * SIDE + column);
+            places.push(row * side + column);
             views.push(View { frame, theta_e: x.hypot(y).atan2(z), phi_e: y.atan2(x) });
         }
     }
-    let is_delta = |lobe: &&Lobe| lobe.model.is_delta_at(lobe.roughness.unwrap_or(0.0));
-    let (deltas, rest): (Vec<_>, Vec<_>) = lobes.iter().cloned().partition(|lobe| is_delta(&lobe));
+    let (deltas, rest): (Vec<_>, Vec<_>) = lobes.iter().cloned().partition(is_delta);
     let coarse = match light {
         Light::Map(map) => Light::Map(map.reduced(64, 32)),
         light => light.clone(),
     };
-    let mut pixels = vec![[f64::NAN; 3]; SIDE * SIDE];
+    let mut pixels = vec![[f64::NAN; 3]; side * side];
     let sharp = exitant::radiance(evaluator, &deltas, light, &views, TOLERANCE, observer)?;
     let soft = exitant::radiance(evaluator, &rest, &coarse, &views, TOLERANCE, observer)?;
     for ((place, sharp), soft) in places.into_iter().zip(sharp).zip(soft) {
         pixels[place] = std::array::from_fn(|c| sharp.value[c] + soft.value[c]);
     }
     Ok(pixels)
+}
+
+fn is_delta(lobe: &Lobe) -> bool {
+    lobe.model.is_delta_at(lobe.roughness.unwrap_or(0.0))
 }
