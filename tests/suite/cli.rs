@@ -753,7 +753,7 @@ fn eval_refuses_with_the_valid_words() {
     let demo = demo();
     let demo = demo.to_str().unwrap();
     let cases: [(&[&str], &str, &[&str]); 15] = [
-        (&["--model=phong"], "0", &["\"phong\"", "lambert", "gltf_diffuse", "ggx", "mirror"]),
+        (&["--model=plastic"], "0", &["\"plastic\"", "lambert", "gltf_diffuse", "ggx", "mirror"]),
         (&["--model=my model"], "0", &["\"my model\"", "lambert", "gltf_diffuse", "ggx", "mirror"]),
         (&["--model=ggx"], "0", &["roughness", "alpha"]),
         (&["--model=ggx", "--set=shiny=1"], "0", &["shiny", "roughness", "alpha", "f0", "f90"]),

@@ -484,5 +484,5 @@ fn models_are_listed_and_described() {
         assert!(model.components.iter().all(|component| page.contains(component.weight)), "{page}");
     }
     assert!(["ggx", "mirror", "smith-separable", "schlick"].iter().all(|word| list.contains(word)), "{list}");
-    assert_eq!(models(&["phong"]).0, Some(2));
+    assert_eq!(models(&["plastic"]).0, Some(2));
 }

@@ -502,7 +502,11 @@ fn recipe_errors_name_the_line_and_the_valid_words() {
         ("[materials.m]\nlobes=[]\n[materials.m]\n".into(), "line 3", &["duplicate"]),
         ("[materials.'']\nlobes = []".into(), "line 1", &["name"]),
         (material("{ roughness = 1 }"), "line 4", &["model"]),
-        (material("{ model = 'phong' }"), "line 4", &["phong", "lambert", "ggx", "mirror", "gltf_diffuse"]),
+        (
+            material("{ model = 'plastic' }"),
+            "line 4",
+            &["plastic", "lambert", "ggx", "mirror", "gltf_diffuse"],
+        ),
         (
             material("{ model = 'ggx', rougness = 1 }"),
             "line 4",
