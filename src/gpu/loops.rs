@@ -86,10 +86,10 @@ mod tests {
         for model in models::all().filter(|model| !matches!(model.integral, Integral::Unbounded(_))) {
             for tolerance in (1..=10).map(|decade| 10f64.powi(-decade)) {
                 for quantity in [&RHO_DH, &RHO_HH] {
-                    let rough = model.shape.map(|_| Axis::natural(Variable::Roughness, 256).unwrap());
+                    let rough = model.shape.map(|_| Axis::natural(Variable::Roughness, 96).unwrap());
                     let about = quantity.variables(model.is_anisotropic());
                     let of = |&variable: &Variable| {
-                        let count = if variable == Variable::PhiI { 3 } else { 256 };
+                        let count = if variable == Variable::PhiI { 3 } else { 96 };
                         Axis::natural(variable, count).unwrap()
                     };
                     let axes = rough.into_iter().chain(about.iter().map(of)).collect();

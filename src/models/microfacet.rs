@@ -531,8 +531,8 @@ mod tests {
             let count = match (film, telling) {
                 (true, true) => 8,
                 (true, false) => 1,
-                (false, true) => 300 / extremes.len().min(6),
-                (false, false) => 12,
+                (false, true) => 200 / extremes.len().min(6),
+                (false, false) => 4,
             };
             let worst: Vec<[f64; 9]> = (0..count * extremes.len())
                 .into_par_iter()
