@@ -452,8 +452,8 @@ mod tests {
                 let mut rules = BTreeSet::new();
                 for parameters in extremes(model) {
                     rules.clear();
-                    for (i, j) in (0..120).flat_map(|i| (0..200).map(move |j| (i, j))) {
-                        let (mu, alpha) = (2f64.powf(-0.2 * f64::from(i)), 2f64.powf(-0.2 * f64::from(j)));
+                    for (i, j) in (0..60).flat_map(|i| (0..100).map(move |j| (i, j))) {
+                        let (mu, alpha) = (2f64.powf(-0.4 * f64::from(i)), 2f64.powf(-0.4 * f64::from(j)));
                         let setting = Setting { alpha, parameters };
                         rules.extend((slopes.counts)(mu, &setting, tolerance).map(|counts| counts.nodes));
                     }
