@@ -234,7 +234,7 @@ fn promises_are_kept_or_declared() {
         for (kind, broken) in
             [(Compensation::KullaConty, &[][..]), (Compensation::Turquin, &["reciprocity", "energy"][..])]
         {
-            let options = Options { budget: 200_000, search: true };
+            let options = Options { budget: 50_000, search: true };
             let report = check(&mut subject(kind, name), &options, &Unobserved).unwrap();
             for finding in &report.findings {
                 println!(

@@ -7,7 +7,7 @@ use gonio::axis::Variable::{self, Mu, ThetaI};
 use gonio::check::Check;
 use gonio::models::{Integral, MODELS, Model};
 use gonio::plan::{INTEGRAL_F32, Rule, TablePlan};
-use gonio::quantity::{QUANTITIES, RHO_DH, RHO_HH, SPLIT_SUM};
+use gonio::quantity::{RHO_DH, RHO_HH, SPLIT_SUM};
 use gonio::table::Table;
 
 /// The models that have integrals.
@@ -20,22 +20,19 @@ fn bounded() -> impl Iterator<Item = &'static Model> {
 #[test]
 fn agree_with_the_reference_at_every_input() {
     let mut roughness = EXTREME_ROUGHNESS.to_vec();
-    roughness.extend([0.0, 1e-4, 3e-3, 0.05, 0.2, 0.5]);
-    let mut mus = vec![1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.03, 0.1, 1.0];
-    mus.extend(golden(12, 0.2));
+    roughness.extend([0.0, 1e-4, 0.05, 0.5]);
+    let mut mus = vec![1e-7, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0];
+    mus.extend(golden(6, 0.2));
     for model in bounded() {
-        for quantity in QUANTITIES.into_iter().filter(|q| q.name != "brdf") {
-            let axes = match quantity.variables {
-                [] => vec![],
-                [Mu] => vec![listed(Mu, &mus)],
-                _ => vec![listed(ThetaI, &extreme_thetas())],
-            };
-            let plan = basis(quantity, model, &roughness, axes);
+        // Of a mean over directions, the reference takes as long as of a table of them.
+        let plans = [
+            basis(&SPLIT_SUM, model, &roughness, vec![listed(Mu, &mus)]),
+            basis(&RHO_DH, model, &[0.0, 1e-3, 0.1, 0.7], vec![listed(ThetaI, &extreme_thetas())]),
+            basis(&RHO_HH, model, &[0.0, 1e-2, 0.2, 1.0], vec![]),
+        ];
+        for tried in plans.map(Tried::new) {
             for evaluator in evaluators() {
-                let table = bake(evaluator, &plan, Check::All);
-                let worst = table.error.measured_max.unwrap();
-                println!("{}.{} {}: {worst:.1e}", model.name, quantity.name, table.precision);
-                assert!(worst <= model.integral_f32(), "{}.{}: {:?}", model.name, quantity.name, table.error);
+                tried.assert_meets(evaluator, model.integral_f32(), 0.0);
             }
         }
     }

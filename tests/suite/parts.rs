@@ -58,15 +58,14 @@ fn values_agree_with_the_reference_and_are_reciprocal() {
 /// Integrals at the extremes and between: α from 0 to 1, μ from 2⁻²⁴ to 1.
 #[test]
 fn integrals_agree_with_the_reference() {
-    let roughness = [0.0, 1e-3, 3e-2, 0.1, 0.3, 0.5, 0.7, 1.0];
-    let mut mus = vec![1e-7, 1e-4, 1e-2, 0.1, 1.0];
+    let roughness = [0.0, 1e-3, 0.1, 0.5, 1.0];
+    let mut mus = vec![1e-7, 1e-3, 0.1, 1.0];
     mus.extend(golden(3, 0.2));
     for model in bounded() {
-        // ρ_dh is the split sum's by another way to ask, and half a second of the reference's work is one ρ_hh.
+        // ρ_dh is the split sum's, asked for in another way; one ρ_hh takes the reference as long as a table of them.
         let plans = [
             basis(&SPLIT_SUM, model, &roughness, vec![listed(Mu, &mus)]),
-            basis(&RHO_DH, model, &[0.1, 0.7], vec![listed(ThetaI, &extreme_thetas())]),
-            basis(&RHO_HH, model, &[0.1, 0.7], vec![]),
+            basis(&RHO_HH, model, &[0.7], vec![]),
         ];
         for tried in plans.map(Tried::new) {
             for evaluator in evaluators() {
@@ -79,12 +78,12 @@ fn integrals_agree_with_the_reference() {
 /// Tolerances are met where the counts were made for other terms; the reference adds 1e-10.
 #[test]
 fn integrals_meet_every_tolerance() {
-    let roughness = [0.05, 0.15, 0.3, 0.6, 1.0];
-    let mus = [1e-3, 0.03, 0.2, 0.5, 0.9, 1.0];
+    let roughness = [0.05, 0.3, 0.6];
+    let mus = [1e-3, 0.03, 0.5, 0.9];
     for model in bounded() {
         for plan in [
             basis(&SPLIT_SUM, model, &roughness, vec![listed(Mu, &mus)]),
-            basis(&RHO_HH, model, &[0.15, 0.6], vec![]),
+            basis(&RHO_HH, model, &[0.3], vec![]),
         ] {
             let tried = Tried::new(plan);
             for tolerance in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8] {
