@@ -14,27 +14,3 @@ fn ndf(h: Half, hz2: real, alpha: real) -> real {
 }
 const SCALE: real = 18487.364273692878; // 2¹⁵/√π
 const NDF_UNIT: real = 9.313225746154785e-10; // 2⁻³⁰
-
-/// Smith's (1 + 2Λ) μ of GGX with the same α, which is these normals' own at γ = 2.
-fn smith_root(mu: real, alpha: real) -> real {
-    return sqrt(alpha * alpha + (1.0 - alpha * alpha) * mu * mu);
-}
-
-/// What `smith_root_at` needs of the fixed direction.
-struct Masked {
-    mu: real,
-    root: real4, // (1 + 2Λ) μ
-    a2: real4,   // α²
-    b2: real4,   // (1 − α²) μ²
-}
-
-fn masked(mu: real, alpha: real4) -> Masked {
-    let a2 = alpha * alpha;
-    let b2 = (1.0 - a2) * (mu * mu);
-    return Masked(mu, sqrt(a2 + b2), a2, b2);
-}
-
-/// y (1 + 2Λ) μi at μi = μe x/y: without a division.
-fn smith_root_at(x: real4, y: real4, e: Masked) -> real4 {
-    return sqrt(fma(e.a2, y * y, e.b2 * (x * x)));
-}

@@ -17,7 +17,7 @@ impl Ndf for Ggx {
         name: "ggx",
         summary: "GGX microfacets",
         source: "Walter et al. 2007, eq. 20 and 33",
-        part: part!("ndf/ggx"),
+        part: part!("ndf/ggx", "ndf/smith_of_ggx"),
     };
     const REFERENCE: &'static dyn reference::Ndf = &reference::Ggx;
     const MAPS: Option<[Part; 2]> = Some([ggx_coarse::PART, ggx_fine::PART]);

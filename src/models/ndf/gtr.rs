@@ -49,7 +49,7 @@ impl Ndf for Gtr {
         name: "gtr",
         summary: "generalised Trowbridge–Reitz microfacets, GGX's Λ",
         source: "Burley 2012, appendix B",
-        part: part!("ndf/gtr", "elementary"),
+        part: part!("ndf/gtr", "elementary", "ndf/smith_of_ggx"),
     };
     const REFERENCE: &'static dyn reference::Ndf = &reference::Gtr;
     const SHAPE: Shape = Shape::GTR;
