@@ -13,12 +13,12 @@ const ROUNDS: usize = 31;
 /// Each invocation writes `each` vectors: side by side (three of them as the value kernel does), or a whole
 /// dispatch apart.
 const FILL: &str = "
-@group(0) @binding(0) var<storage, read_write> values: array<vec4f>;
+@group(0) @binding(0) var<storage, read_write> values: array<VECTOR>;
 @compute @workgroup_size(WORKGROUP)
 fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let i = id.x + id.y * groups.x * WORKGROUPu;
     let all = groups.x * groups.y * WORKGROUPu;
-    let v = vec4f(f32(i), 1.0, 2.0, 3.0);
+    let v = VECTOR(NUMBERS);
     STORES
 }";
 
@@ -43,9 +43,14 @@ fn main() -> gonio::Result<()> {
     for workgroup in [64, 128, 256] {
         for (each, apart) in [(1, false), (3, false), (4, false), (4, true)] {
             let how = if apart { "apart" } else { "side by side" };
-            let fill = Fill::new(device, &buffer, workgroup, each, apart);
+            let fill = Fill::new(device, &buffer, workgroup, each, apart, false);
             runs.push((format!("fill, workgroup {workgroup}, {each} vec4 {how}"), Run::Fill(fill)));
         }
+    }
+    // The value kernel stores so where the device has such words.
+    if device.features().contains(wgpu::Features::SHADER_INT64) {
+        let fill = Fill::new(device, &buffer, 256, 3, false, true);
+        runs.push(("fill, workgroup 256, words of 64 bits".into(), Run::Fill(fill)));
     }
 
     // In turns, as the machine may have more than one speed.
@@ -63,9 +68,12 @@ fn main() -> gonio::Result<()> {
     }
     let median = |k: usize| times(k)[ROUNDS / 2];
     println!("{:.0} M RGB values/s", texels as f64 / median(0) / 1e6);
-    let fills = 1..runs.len();
-    let same = fills.clone().filter(|&k| runs[k].0.contains("3 vec4 side by side")).collect::<Vec<_>>();
-    for (what, fills) in [("the best fill", fills.collect()), ("the best fill in the same layout", same)] {
+    let named = |name: &str| (1..runs.len()).filter(|&k| runs[k].0.contains(name)).collect::<Vec<_>>();
+    for (what, fills) in [
+        ("the best plain fill", named("vec4")),
+        ("the best plain fill in the same layout", named("3 vec4 side by side")),
+        ("the fill by words of 64 bits", named("words")),
+    ] {
         let Some(best) = fills.into_iter().min_by(|&a, &b| median(a).total_cmp(&median(b))) else { continue };
         let shares = sorted(rounds.iter().map(|round| round[best] / round[0]).collect());
         let [low, middle, high] = [ROUNDS / 4, ROUNDS / 2, 3 * ROUNDS / 4].map(|k| 100.0 * shares[k]);
@@ -122,13 +130,25 @@ struct Fill {
 }
 
 impl Fill {
-    fn new(device: &wgpu::Device, buffer: &wgpu::Buffer, workgroup: u64, each: u64, apart: bool) -> Self {
+    fn new(
+        device: &wgpu::Device,
+        buffer: &wgpu::Buffer,
+        workgroup: u64,
+        each: u64,
+        apart: bool,
+        wide: bool,
+    ) -> Self {
         let store = |k: u64| match apart {
             true => format!("values[i + {k}u * all] = v;"),
             false => format!("values[{each}u * i + {k}u] = v;"),
         };
         let stores: String = (0..each).map(store).collect();
         let source = FILL.replace("WORKGROUP", &workgroup.to_string()).replace("STORES", &stores);
+        let (vector, numbers) = match wide {
+            true => ("vec2<u64>", "u64(i) | (u64(i) << 32u), u64(i)"),
+            false => ("vec4f", "f32(i), 1.0, 2.0, 3.0"),
+        };
+        let source = source.replace("VECTOR", vector).replace("NUMBERS", numbers);
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: None,
             source: wgpu::ShaderSource::Wgsl(source.into()),

@@ -37,7 +37,6 @@ struct Row {
     is_there: bool,
 }
 
-@group(0) @binding(1) var<storage, read_write> values: array<vec4f>;
 @group(0) @binding(2) var<storage, read> rows: array<Given>;
 @group(0) @binding(3) var<uniform> quads: Quads;
 
@@ -97,12 +96,4 @@ fn azimuths_of(quad: u32) -> Azimuths {
         Azimuth(sin2.z, cos2.z, back.z, 0.0, 0.0, cp.z, cm.z, sp.z, sm.z),
         Azimuth(sin2.w, cos2.w, back.w, 0.0, 0.0, cp.w, cm.w, sp.w, sm.w),
     );
-}
-
-fn put(at: u32, v: vec4f) {
-    if ADD {
-        values[at] += v;
-    } else {
-        values[at] = v;
-    }
 }

@@ -14,6 +14,8 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 pub enum Kernel {
     /// Values over (α, θi, θe, δφ).
     Values,
+    /// The same, stored in words of 64 bits.
+    WideValues,
     /// The same, added to those of earlier lobes.
     AddValues,
     /// Values at a list of pairs of directions.
@@ -73,7 +75,9 @@ pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize, precision
     let mut source = format!("alias real = {real};\nalias real2 = vec2<real>;\nalias real4 = vec4<real>;\n");
     match kernel {
         Kernel::Slopes => source += &format!("const NODES = {COARSE_NODES}u;\n"),
-        Kernel::Values | Kernel::AddValues => source += &format!("const WINDOW = {VALUE_WINDOW}u;\n"),
+        Kernel::Values | Kernel::WideValues | Kernel::AddValues => {
+            source += &format!("const WINDOW = {VALUE_WINDOW}u;\n")
+        }
         _ => {}
     }
     let add = matches!(kernel, Kernel::AddValues | Kernel::AddPoints | Kernel::AddSum);
@@ -104,20 +108,35 @@ pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize, precision
     }
     files.iter().for_each(&mut add);
     match (kernel, channels) {
-        (Kernel::Values | Kernel::AddValues, _) => {}
+        (Kernel::Values | Kernel::WideValues | Kernel::AddValues, _) => {}
         (_, 0) => add(&part!("kernel/write_raw")),
         _ => add(&part!("kernel/write_channels")),
     }
     source
 }
 
+const VALUES: Part = part!("kernel/values");
+const PUT: Part = part!("kernel/put");
+const PUT_WIDE: Part = part!("kernel/put_wide");
+
 impl Kernel {
+    /// The same on a device that has `features`, by the fastest stores that it has.
+    pub(super) fn on(self, features: wgpu::Features) -> Self {
+        match self {
+            Self::Values if features.contains(wgpu::Features::SHADER_INT64) => Self::WideValues,
+            kernel => kernel,
+        }
+    }
+
     /// Its own files, in order.
     fn files(self, channels: usize) -> &'static [Part] {
         match (self, channels) {
-            (Self::Values | Self::AddValues, 1) => &[part!("kernel/store_1"), part!("kernel/values")],
-            (Self::Values | Self::AddValues, 2) => &[part!("kernel/store_2"), part!("kernel/values")],
-            (Self::Values | Self::AddValues, _) => &[part!("kernel/store_3"), part!("kernel/values")],
+            (Self::Values | Self::AddValues, 1) => &[PUT, part!("kernel/store_1"), VALUES],
+            (Self::Values | Self::AddValues, 2) => &[PUT, part!("kernel/store_2"), VALUES],
+            (Self::Values | Self::AddValues, _) => &[PUT, part!("kernel/store_3"), VALUES],
+            (Self::WideValues, 1) => &[PUT_WIDE, part!("kernel/store_1"), VALUES],
+            (Self::WideValues, 2) => &[PUT_WIDE, part!("kernel/store_2"), VALUES],
+            (Self::WideValues, _) => &[PUT_WIDE, part!("kernel/store_3"), VALUES],
             (Self::Points | Self::AddPoints, _) => &[part!("kernel/point"), part!("kernel/points")],
             (Self::Mapped, _) => &[part!("kernel/point"), part!("kernel/mapped")],
             (Self::Slopes, _) => {
@@ -151,13 +170,14 @@ impl Kernel {
 }
 
 /// Parses and validates a composed shader before any device sees it: for what every WebGPU device has,
-/// and f64 where that is the precision.
+/// f64 where that is the precision, and words of 64 bits where values are stored so.
 pub fn validate(source: &str, precision: Precision) -> Result<naga::Module> {
     let fault = |what: String| Error::Internal(format!("a composed shader is not valid WGSL: {what}"));
     let module = naga::front::wgsl::parse_str(source).map_err(|e| fault(e.emit_to_string(source)))?;
     // pack2x16float is core WGSL; naga counts it because old GLES lacks it.
     let mut capabilities = Capabilities::SHADER_FLOAT16_IN_FLOAT32;
     capabilities.set(Capabilities::FLOAT64, precision == Precision::F64);
+    capabilities.set(Capabilities::SHADER_INT64, source.contains(PUT_WIDE.wgsl));
     Validator::new(ValidationFlags::all(), capabilities)
         .validate(&module)
         .map_err(|e| fault(e.emit_to_string(source)))?;

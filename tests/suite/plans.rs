@@ -59,7 +59,7 @@ fn a_module_holds_one_kernel_and_its_model() {
     assert!(!compose(Kernel::Analytic, Some(model("mirror")), 0, Precision::F32).contains("fn ndf("));
 }
 
-/// For every WebGPU device: no optional capability.
+/// For every WebGPU device: no optional capability, but for stores by words of 64 bits, of which there is another way.
 #[test]
 fn every_shader_is_portable() {
     for model in MODELS {
