@@ -6,8 +6,8 @@ fn lobe(p: Pair, a: Azimuth, alpha: real, row: real) -> real2 {
     return fresnel(h.c, h.one_minus_c) * ((row * root) * root / h.c);
 }
 
-/// With n + 1 = (2 − α²)/α².
+/// With n + 1 = (2 − α²)/α², in units of 2⁶⁰.
 fn lobe_row(p: Pair, alpha: real) -> real {
     let a2 = alpha * alpha;
-    return 0.125 * INV_PI * (2.0 - a2) / (a2 * max(p.mu_i, p.mu_e));
+    return 0.125 * UNIT * INV_PI * (2.0 - a2) / (a2 * max(p.mu_i, p.mu_e));
 }

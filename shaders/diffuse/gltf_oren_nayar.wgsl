@@ -8,8 +8,8 @@ fn lobe(p: Pair, a: Azimuth, alpha: real, row: real) -> real2 {
     return real2(fresnel(h.c, h.one_minus_c).x * (INV_PI * (row + b * retro(p, a))), 0.0);
 }
 
-/// A = 1 − 0.5 σ²/(σ² + 0.33)
+/// A = 1 − 0.5 σ²/(σ² + 0.33), which is 1 at σ = 0 however a device divides.
 fn lobe_row(p: Pair, alpha: real) -> real {
     let s2 = alpha * alpha;
-    return (0.5 * s2 + 0.33) / (s2 + 0.33);
+    return 1.0 - 0.5 * s2 / (s2 + 0.33);
 }

@@ -46,7 +46,7 @@ fn values_agree_with_the_reference_and_are_reciprocal() {
                 {
                     let at = |a, b| table.texel(((outer * n + a) * n + b) * d + k);
                     for (there, back) in at(a, b).into_iter().zip(at(b, a)) {
-                        let budget = 2.0 * f64::from(f32::EPSILON) * there.max(back);
+                        let budget = exchange_budget(evaluator, model) * there.max(back);
                         assert!((there - back).abs() <= budget, "{}: {there} and {back}", model.name);
                     }
                 }

@@ -37,7 +37,7 @@ pub(crate) static MODEL: Model = Model {
     lobe: |p, a, s| {
         let h = Half::new(p, a);
         let s2 = s.alpha * s.alpha;
-        let (a_term, b_term) = ((0.5 * s2 + 0.33) / (s2 + 0.33), 0.45 * s2 / (s2 + 0.09));
+        let (a_term, b_term) = (1.0 - 0.5 * s2 / (s2 + 0.33), 0.45 * s2 / (s2 + 0.09));
         let rough = FRAC_1_PI * (a_term + b_term * retro::retro(p, a));
         [schlick::fresnel(h.c, h.one_minus_c)[0] * rough, 0.0]
     },

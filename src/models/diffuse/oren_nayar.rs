@@ -40,7 +40,7 @@ pub(crate) static MODEL: Model = Model {
     integral: Integral::Kinked(nodes),
     lobe: |p, a, s| {
         let s2 = s.alpha * s.alpha;
-        let (a_term, b_term) = ((0.5 * s2 + 0.33) / (s2 + 0.33), 0.45 * s2 / (s2 + 0.09));
+        let (a_term, b_term) = (1.0 - 0.5 * s2 / (s2 + 0.33), 0.45 * s2 / (s2 + 0.09));
         [FRAC_1_PI * (a_term + b_term * retro::retro(p, a)), 0.0]
     },
     reference: Some(reference::OREN_NAYAR),

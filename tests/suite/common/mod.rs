@@ -121,6 +121,16 @@ pub fn value_budgets(model: &Model) -> [f64; 2] {
     [model.value_f32, STORED_F32 + 2e-8 * model.value_f32 / VALUE_F32]
 }
 
+/// What an exchange of ωi and ωe may change of a model's values, relative. It exchanges operands of commutative sums and
+/// products: no bit, but for the rounding to storage; unless a driver contracts a·b + c, so that of two products one is
+/// not rounded, and which one changes: then each of both is within its budget of the same f.
+pub fn exchange_budget(evaluator: &Evaluator, model: &Model) -> f64 {
+    match evaluator {
+        Evaluator::Device(device) if device.canary().unwrap().contracts => 2.0 * model.value_f32,
+        _ => 2.0 * f64::from(f32::EPSILON),
+    }
+}
+
 /// The extremes of θ, rad.
 pub fn extreme_thetas() -> Vec<f64> {
     let right = std::f64::consts::FRAC_PI_2;
