@@ -77,9 +77,14 @@ fn evaluate(row: Row, quad: u32, z: Azimuths, w: Weights) {
     let a1 = lobe(row.pair, z.b, row.pair.own, row.lobe);
     let a2 = lobe(row.pair, z.c, row.pair.own, row.lobe);
     let a3 = lobe(row.pair, z.d, row.pair.own, row.lobe);
-    // What the row is multiplied with is the weights' to bear: 1 changes no bit.
-    let s = row.scale;
-    store(row.first + quad * CHANNELS, Weights(s * w.r, s * w.g, s * w.b), a0, a1, a2, a3);
+    let at = row.first + quad * CHANNELS;
+    if SCALED {
+        // What the row is multiplied with is the weights' to bear: 1 changes no bit.
+        let s = row.scale;
+        store(at, Weights(s * w.r, s * w.g, s * w.b), a0, a1, a2, a3);
+    } else {
+        store(at, w, a0, a1, a2, a3);
+    }
 }
 
 fn azimuths_of(quad: u32) -> Azimuths {

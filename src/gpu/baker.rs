@@ -331,8 +331,7 @@ impl Baker {
         steps: &mut Vec<Step>,
     ) -> Result<()> {
         const BYTES: u64 = (VALUE_WINDOW * QUAD_FACTORS * 16) as u64;
-        let kernel = stage.kernel.on(self.device.features());
-        let pipeline = &self.pipeline(kernel, stage.model, stage.channels, stage.precision)?;
+        let pipeline = &self.pipeline(stage.kernel, stage.model, stage.channels, stage.precision)?;
         let groups = rows.of(units);
         let all = groups.concat();
         let rows = self.init(bytemuck::cast_slice(&all), wgpu::BufferUsages::STORAGE);

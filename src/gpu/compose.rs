@@ -14,7 +14,7 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 pub enum Kernel {
     /// Values over (α, θi, θe, δφ).
     Values,
-    /// The same, stored in words of 64 bits.
+    /// The same of a lobe that nothing multiplies, stored in words of 64 bits.
     WideValues,
     /// The same, added to those of earlier lobes.
     AddValues,
@@ -73,15 +73,15 @@ pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize, precision
     // One source for both: no kernel calls a transcendental built-in, which f64 lacks.
     let real = precision.name();
     let mut source = format!("alias real = {real};\nalias real2 = vec2<real>;\nalias real4 = vec4<real>;\n");
-    match kernel {
-        Kernel::Slopes => source += &format!("const NODES = {COARSE_NODES}u;\n"),
-        Kernel::Values | Kernel::WideValues | Kernel::AddValues => {
-            source += &format!("const WINDOW = {VALUE_WINDOW}u;\n")
-        }
-        _ => {}
+    if kernel == Kernel::Slopes {
+        source += &format!("const NODES = {COARSE_NODES}u;\n");
     }
     let add = matches!(kernel, Kernel::AddValues | Kernel::AddPoints | Kernel::AddSum);
     source += &format!("const CHANNELS = {channels}u;\nconst ADD = {add};\n");
+    if kernel.is_of_values() {
+        let scaled = kernel != Kernel::WideValues;
+        source += &format!("const WINDOW = {VALUE_WINDOW}u;\nconst SCALED = {scaled};\n");
+    }
     let mut add = |part: &Part| {
         source += &format!("\n// ---- {}\n{}", part.name, part.wgsl);
         for (name, wgsl) in part.shared {
@@ -107,9 +107,9 @@ pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize, precision
         }
     }
     files.iter().for_each(&mut add);
-    match (kernel, channels) {
-        (Kernel::Values | Kernel::WideValues | Kernel::AddValues, _) => {}
-        (_, 0) => add(&part!("kernel/write_raw")),
+    match channels {
+        _ if kernel.is_of_values() => {}
+        0 => add(&part!("kernel/write_raw")),
         _ => add(&part!("kernel/write_channels")),
     }
     source
@@ -120,14 +120,6 @@ const PUT: Part = part!("kernel/put");
 const PUT_WIDE: Part = part!("kernel/put_wide");
 
 impl Kernel {
-    /// The same on a device that has `features`, by the fastest stores that it has.
-    pub(super) fn on(self, features: wgpu::Features) -> Self {
-        match self {
-            Self::Values if features.contains(wgpu::Features::SHADER_INT64) => Self::WideValues,
-            kernel => kernel,
-        }
-    }
-
     /// Its own files, in order.
     fn files(self, channels: usize) -> &'static [Part] {
         match (self, channels) {
@@ -161,6 +153,10 @@ impl Kernel {
             (Self::Irradiance, _) => &[part!("light/irradiance")],
             (Self::Canary, _) => &[part!("probe/canary")],
         }
+    }
+
+    fn is_of_values(self) -> bool {
+        matches!(self, Self::Values | Self::WideValues | Self::AddValues)
     }
 
     /// Whether it knows no job, model or precision: its file is all of it.

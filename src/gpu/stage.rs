@@ -106,10 +106,15 @@ impl Stages {
         let upload = Upload { baker, precision };
         let channels = lobe.weights.len();
         let alphas: Vec<_> = work.alphas.iter().map(|&alpha| lobe.model.on_device(alpha)).collect();
+        let has_words = baker.device.features().contains(wgpu::Features::SHADER_INT64);
         match &work.kind {
             WorkKind::Values(values) => Ok(Self {
                 inner: Stage {
-                    kernel: if accumulate { Kernel::AddValues } else { Kernel::Values },
+                    kernel: match accumulate {
+                        true => Kernel::AddValues,
+                        false if has_words && work.scales.is_empty() => Kernel::WideValues,
+                        false => Kernel::Values,
+                    },
                     model: Some(lobe.model),
                     channels,
                     precision: Precision::F32,
