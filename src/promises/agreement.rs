@@ -1,4 +1,5 @@
-//! f against the subject's independent f64 reference: largest and root mean square relative error, and ULP.
+//! f against the subject's independent f64 reference: largest and root mean square relative error, and ULP. Where rounding
+//! costs more at some settings than at others, each is held to its own.
 
 use super::probe::{Probe, is_non_finite};
 use super::{Angles, Property, Subject};
@@ -8,11 +9,12 @@ pub(super) struct Agreement {
     squares: f64,
     count: u64,
     ulp: f64,
+    largest: f64,
 }
 
 impl Agreement {
     pub fn new(tolerance: f64) -> Self {
-        Self { tolerance, squares: 0.0, count: 0, ulp: 0.0 }
+        Self { tolerance, squares: 0.0, count: 0, ulp: 0.0, largest: 0.0 }
     }
 }
 
@@ -37,6 +39,9 @@ impl Property for Agreement {
     fn judge(&mut self, subject: &dyn Subject, setting: &[f64], orbit: &[Angles], values: &[f32]) -> f64 {
         let Some(reference) = subject.reference(setting, &orbit[0]) else { return f64::NEG_INFINITY };
         let mut worst = f64::NEG_INFINITY;
+        // As if all settings had the tolerance of the worst.
+        let scale =
+            subject.agreement_at(setting).map_or(1.0, |here| self.tolerance / here.min(self.tolerance));
         for (&value, exact) in values.iter().zip(reference) {
             if is_non_finite(value) || !exact.is_finite() {
                 continue;
@@ -46,16 +51,21 @@ impl Property for Agreement {
             self.squares += relative * relative;
             self.count += 1;
             self.ulp = self.ulp.max(error / ulp(exact.abs().max(subject.faint())));
-            worst = worst.max(relative);
+            self.largest = self.largest.max(relative);
+            worst = worst.max(scale * relative);
         }
         worst
     }
 
     fn say(&self, deviation: f64, _: &Probe) -> String {
         let rms = (self.squares / self.count.max(1) as f64).sqrt();
+        let share = match deviation > self.largest {
+            true => format!(", {:.2} of what rounding may cost where it is most", deviation / self.tolerance),
+            false => String::new(),
+        };
         format!(
-            "within {deviation:.1e} relative of the f64 reference, rms {rms:.1e}, {:.1} ULP at most",
-            self.ulp
+            "within {:.1e} relative of the f64 reference, rms {rms:.1e}, {:.1} ULP at most{share}",
+            self.largest, self.ulp
         )
     }
 }

@@ -138,6 +138,11 @@ pub trait Subject {
         Tolerances::default()
     }
 
+    /// What rounding may cost of its agreement at one setting, where that is less than at the worst.
+    fn agreement_at(&self, _setting: &[f64]) -> Option<f64> {
+        None
+    }
+
     /// How far the directions that it computes with may be from unit length: 0 where it works from angles,
     /// 2⁻²⁴ where they are vectors in f32.
     fn rounding(&self) -> f64 {

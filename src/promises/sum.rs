@@ -333,6 +333,14 @@ impl Subject for Sum<'_> {
         }
     }
 
+    /// Of lobes that nothing multiplies, as it is asked for every value.
+    fn agreement_at(&self, setting: &[f64]) -> Option<f64> {
+        let (last, lobes) = &self.last;
+        let is_known = last == setting && lobes.iter().all(|lobe| lobe.factors.is_empty());
+        let errors = || lobes.iter().map(|lobe| lobe.model.value_f32_at(&lobe.setting_at(None)));
+        is_known.then(|| errors().fold(VALUE_F32, f64::max))
+    }
+
     /// Where α differ, a common turn changes f.
     fn symmetry(&self) -> Symmetry {
         let anisotropic = self.last.1.iter().any(|lobe| lobe.model.is_anisotropic());

@@ -1,13 +1,15 @@
 //! Promises of our own models: kept over their whole ranges, what a format declares is there and bounded, and
 //! each worst input can be pasted into `gonio eval`.
 
-use crate::common::device;
+use crate::common::{device, model};
 use gonio::bake::Unobserved;
 use gonio::factor::Compensation;
 use gonio::models::MODELS;
 use gonio::plan::Lobe;
 use gonio::points::Angles;
-use gonio::promises::{Declared, Options, Parameter, Report, Subject, Sum, Verdict, check};
+use gonio::promises::{
+    Declared, Options, Parameter, Report, Subject, Sum, Symmetry, Tolerances, Verdict, check,
+};
 use gonio::scene::{Distribution, Formula, Input, Material, MaterialLobe, Weights};
 
 const OPTIONS: Options = Options { budget: 2_000_000, search: true };
@@ -143,10 +145,11 @@ fn a_material_that_cannot_gain_need_not() {
     }
 }
 
-/// White plastic whose integrals are scaled: what it declares is missing, or beyond its bound.
+/// A subject whose integrals are scaled, and whose values.
 struct Scaled<'a> {
     inner: Sum<'a>,
     scale: f64,
+    values: f32,
 }
 
 impl Subject for Scaled<'_> {
@@ -160,9 +163,27 @@ impl Subject for Scaled<'_> {
         self.inner.channels()
     }
     fn evaluate(&mut self, setting: &[f64], angles: &[Angles], out: &mut Vec<f32>) -> gonio::Result<()> {
-        self.inner.evaluate(setting, angles, out)
+        let first = out.len();
+        self.inner.evaluate(setting, angles, out)?;
+        out[first..].iter_mut().for_each(|f| *f *= self.values);
+        Ok(())
+    }
+    fn reference(&self, setting: &[f64], angles: &Angles) -> Option<Vec<f64>> {
+        self.inner.reference(setting, angles)
+    }
+    fn symmetry(&self) -> Symmetry {
+        self.inner.symmetry()
+    }
+    fn tolerances(&self) -> Tolerances {
+        self.inner.tolerances()
+    }
+    fn agreement_at(&self, setting: &[f64]) -> Option<f64> {
+        self.inner.agreement_at(setting)
     }
     fn rho_dh(&mut self, settings: &[Vec<f64>], thetas: &[f64]) -> gonio::Result<Option<Vec<f64>>> {
+        if self.scale == 0.0 {
+            return Ok(Some(vec![0.0; settings.len() * thetas.len() * self.channels()]));
+        }
         let rho = self.inner.rho_dh(settings, thetas)?;
         Ok(rho.map(|rho| rho.into_iter().map(|rho| rho * self.scale).collect()))
     }
@@ -174,12 +195,27 @@ impl Subject for Scaled<'_> {
     }
 }
 
+/// White plastic: what it declares is missing, or beyond its bound.
 #[test]
 fn a_declared_gain_that_is_missing_or_too_large_fails() {
     let material = gltf([0.1, 1.0], [0.0; 2], [1.0; 2]);
     for (scale, expected) in [(1.0, Verdict::Declared), (0.5, Verdict::Broken), (1.2, Verdict::Broken)] {
-        let mut subject = Scaled { inner: Sum::material(device(), &material).unwrap(), scale };
+        let mut subject = Scaled { inner: Sum::material(device(), &material).unwrap(), scale, values: 1.0 };
         assert_eq!(verdict(&report(&mut subject), "energy"), expected, "{scale}");
+    }
+}
+
+/// Where α differ by 100, f32 may lose 7e-5 of a value; what is wrong by less where they do not is found all the same.
+#[test]
+fn agreement_is_asked_for_at_every_setting() {
+    for (values, expected) in [(1.0, Verdict::Kept), (1.0 + 3e-5, Verdict::Broken)] {
+        let lobe = Lobe::new(model("ggx-anisotropic"), Some(0.5), vec![[1.0; 2]; 3]);
+        let inner = Sum::model(device(), lobe, vec![Parameter::new("aspect", 0.01, 100.0).unwrap()]).unwrap();
+        let options = Options { budget: 200_000, search: false };
+        let report = check(&mut Scaled { inner, scale: 0.0, values }, &options, &Unobserved).unwrap();
+        let agreement = report.find("agreement").unwrap();
+        assert!(agreement.limit > 6e-5);
+        assert_eq!(agreement.verdict, expected, "{agreement:?}");
     }
 }
 
