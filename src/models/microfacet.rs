@@ -10,9 +10,9 @@ use super::fresnel::{
 };
 use super::half_vector::{self, stretched};
 use super::masking::{
-    Masking, Toward, ashikhmin_neubelt::AshikhminNeubelt, kelemen::Kelemen, none::Unmasked,
-    schlick_ggx::SchlickGgx, schlick_ggx_direct::SchlickGgxDirect, smith_correlated::SmithCorrelated,
-    smith_separable::SmithSeparable, v_cavity::VCavity,
+    Masking, Toward, ashikhmin_neubelt::AshikhminNeubelt, disney_clearcoat::DisneyClearcoat,
+    kelemen::Kelemen, none::Unmasked, schlick_ggx::SchlickGgx, schlick_ggx_direct::SchlickGgxDirect,
+    smith_correlated::SmithCorrelated, smith_separable::SmithSeparable, v_cavity::VCavity,
 };
 use super::ndf::{
     Map, Ndf, beckmann::Beckmann, blinn_phong::BlinnPhong, charlie::Charlie, ggx::Ggx, gtr::Gtr,
@@ -86,7 +86,8 @@ macro_rules! parts {
 
 parts! {
     ndfs: Ggx, Beckmann, Stretched<Ggx>, Stretched<Beckmann>, Gtr, BlinnPhong, Charlie;
-    maskings: SmithCorrelated, SmithSeparable, SchlickGgx, SchlickGgxDirect, VCavity, Kelemen, AshikhminNeubelt, Unmasked;
+    maskings: SmithCorrelated, SmithSeparable, SchlickGgx, SchlickGgxDirect, VCavity, Kelemen, AshikhminNeubelt, DisneyClearcoat,
+        Unmasked;
     fresnels: Schlick, Constant, Dielectric, Conductor, F82, ThinFilm;
 }
 
@@ -246,7 +247,7 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         metals: F::METALS,
         refused: F::refused,
         value_f32: |s| N::value_f32(s) + F::VALUE_F32,
-        rho_most: |s| N::rho_most(s) * F::BOUND,
+        rho_most: |s| M::rho_most(N::rho_most(s), s.alpha) * F::BOUND,
         integral_f32: N::INTEGRAL_F32,
         faint: N::FAINT,
         seam: N::SEAM,

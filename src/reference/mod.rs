@@ -55,6 +55,7 @@ pub(crate) use fresnel::{
 pub(crate) use masking::{
     Masking,
     ashikhmin_neubelt::AshikhminNeubelt,
+    disney_clearcoat::DisneyClearcoat,
     kelemen::Kelemen,
     none::Unmasked,
     schlick_ggx::{SchlickGgx, SchlickGgxDirect},

@@ -28,6 +28,8 @@ struct Disney {
     anisotropic: f64,
     sheen: f64,
     sheen_tint: f64,
+    clearcoat: f64,
+    clearcoat_gloss: f64,
 }
 
 const DEFAULT: Disney = Disney {
@@ -40,6 +42,8 @@ const DEFAULT: Disney = Disney {
     anisotropic: 0.0,
     sheen: 0.0,
     sheen_tint: 0.5,
+    clearcoat: 0.0,
+    clearcoat_gloss: 1.0,
 };
 
 fn dot(a: Vector, b: Vector) -> f64 {
@@ -55,7 +59,8 @@ fn schlick_fresnel(u: f64) -> f64 {
 }
 
 impl Disney {
-    /// `BRDF(L, V, N, X, Y)` with N = z, X = x and Y = y, without the clearcoat.
+    /// `BRDF(L, V, N, X, Y)` with N = z, X = x and Y = y. GTR1's 1 + (a² − 1) NdotH², which loses its digits at the peak, is
+    /// sin²θm + a² NdotH² here.
     fn brdf(&self, l: Vector, v: Vector) -> [f64; 3] {
         let sum: Vector = std::array::from_fn(|k| l[k] + v[k]);
         let h = sum.map(|x| x / dot(sum, sum).sqrt());
@@ -75,6 +80,14 @@ impl Disney {
         let smith =
             |w: Vector| 1.0 / (w[2] + ((w[0] * ax).powi(2) + (w[1] * ay).powi(2) + w[2] * w[2]).sqrt());
         let g = smith(l) * smith(v);
+        let a2 = mix(0.1, 0.001, self.clearcoat_gloss).powi(2);
+        let dr = (a2 - 1.0) / (PI * a2.ln() * (h[0] * h[0] + h[1] * h[1] + a2 * h[2] * h[2]));
+        let fr = mix(0.04, 1.0, fh);
+        let smith = |n_v: f64| {
+            let (a, b) = (0.25 * 0.25, n_v * n_v);
+            1.0 / (n_v + (a + b - a * b).sqrt())
+        };
+        let gr = smith(n_l) * smith(n_v);
         std::array::from_fn(|k| {
             let tint = if luminance > 0.0 { c[k] / luminance } else { 1.0 };
             let c_spec0 = mix(self.specular * 0.08 * mix(1.0, tint, self.specular_tint), c[k], self.metallic);
@@ -82,16 +95,18 @@ impl Disney {
             let f_sheen = fh * self.sheen * c_sheen;
             (mix(fd, ss, self.subsurface) * c[k] / PI + f_sheen) * (1.0 - self.metallic)
                 + g * mix(c_spec0, 1.0, fh) * d
+                + 0.25 * self.clearcoat * gr * fr * dr
         })
     }
 
     fn recipe(&self) -> String {
         let Self { base_color: [r, g, b], metallic, subsurface, specular, roughness, .. } = self;
-        let Self { specular_tint, anisotropic, sheen, sheen_tint, .. } = self;
+        let Self { specular_tint, anisotropic, sheen, sheen_tint, clearcoat, clearcoat_gloss, .. } = self;
         format!(
             "[materials.paint]\ndisney = {{ base_color = [{r:?}, {g:?}, {b:?}], metallic = {metallic:?}, subsurface = \
              {subsurface:?}, specular = {specular:?}, roughness = {roughness:?}, specular_tint = {specular_tint:?}, \
-             anisotropic = {anisotropic:?}, sheen = {sheen:?}, sheen_tint = {sheen_tint:?} }}"
+             anisotropic = {anisotropic:?}, sheen = {sheen:?}, sheen_tint = {sheen_tint:?}, clearcoat = {clearcoat:?}, \
+             clearcoat_gloss = {clearcoat_gloss:?} }}"
         )
     }
 }
@@ -109,6 +124,7 @@ fn lobes(material: &Material) -> Vec<&str> {
 fn materials_are_what_the_formula_says() {
     const GGX: &str = "ggx-smith-separable-schlick";
     const STRETCHED: &str = "ggx-anisotropic-smith-separable-schlick";
+    const CLEARCOAT: &str = "gtr-disney-clearcoat-schlick";
     let cases = [
         (DEFAULT, vec!["burley", GGX]),
         (Disney { metallic: 1.0, roughness: 0.3, ..DEFAULT }, vec![GGX]),
@@ -120,6 +136,12 @@ fn materials_are_what_the_formula_says() {
         ),
         (Disney { anisotropic: 0.9, roughness: 0.6, specular: 1.0, ..DEFAULT }, vec!["burley", STRETCHED]),
         (Disney { roughness: 0.0, base_color: [0.0; 3], sheen: 1.0, ..DEFAULT }, vec!["disney-sheen", GGX]),
+        (Disney { clearcoat: 1.0, ..DEFAULT }, vec!["burley", GGX, CLEARCOAT]),
+        (Disney { clearcoat: 0.3, clearcoat_gloss: 0.0, metallic: 1.0, ..DEFAULT }, vec![GGX, CLEARCOAT]),
+        (
+            Disney { clearcoat: 0.7, clearcoat_gloss: 0.5, anisotropic: 0.5, ..DEFAULT },
+            vec!["burley", STRETCHED, CLEARCOAT],
+        ),
     ];
     for (disney, models) in cases {
         let scene = scene(&disney.recipe()).unwrap();
@@ -158,15 +180,18 @@ const STORED: f64 = 3.0 / (1 << 24) as f64;
 /// The reference integrates the same sum; f32 meets what a table may be off by.
 #[test]
 fn integrals_meet_their_tolerance() {
-    let disney = Disney { subsurface: 0.5, sheen: 0.5, anisotropic: 0.0, ..DEFAULT };
-    let scene = scene(&disney.recipe()).unwrap();
-    for tolerance in [1e-2, 1e-4, 3e-6] {
-        let axes = vec![listed(Variable::ThetaI, &[0.0, 0.6, 1.2, 1.5, 1.57, PI / 2.0])];
-        let plan =
-            TablePlan::material("t", &RHO_DH, &scene, "paint", axes).unwrap().with_tolerance(tolerance);
-        let table = bake(device(), &plan, Check::All);
-        println!("to {tolerance}: {:?}", table.error.measured_max);
-        assert!(table.error.measured_max.unwrap() <= tolerance, "{:?}", table.error);
+    let cloth = Disney { subsurface: 0.5, sheen: 0.5, ..DEFAULT };
+    let coated = Disney { clearcoat: 1.0, clearcoat_gloss: 0.9, ..DEFAULT };
+    for disney in [cloth, coated] {
+        let scene = scene(&disney.recipe()).unwrap();
+        for tolerance in [1e-2, 1e-4, 3e-6] {
+            let axes = vec![listed(Variable::ThetaI, &[0.0, 0.6, 1.2, 1.5, 1.57, PI / 2.0])];
+            let plan =
+                TablePlan::material("t", &RHO_DH, &scene, "paint", axes).unwrap().with_tolerance(tolerance);
+            let table = bake(device(), &plan, Check::All);
+            println!("to {tolerance}: {:?}", table.error.measured_max);
+            assert!(table.error.measured_max.unwrap() <= tolerance, "{:?}", table.error);
+        }
     }
 }
 
@@ -175,7 +200,8 @@ fn integrals_meet_their_tolerance() {
 fn promises_are_kept_or_declared() {
     let white = Disney { base_color: [1.0; 3], roughness: 1.0, subsurface: 0.3, sheen: 1.0, ..DEFAULT };
     let gold = Disney { metallic: 1.0, anisotropic: 0.5, ..DEFAULT };
-    for (disney, gains) in [(white, true), (gold, false)] {
+    let coated = Disney { clearcoat: 1.0, ..white };
+    for (disney, gains) in [(white, true), (gold, false), (coated, true)] {
         let scene = scene(&disney.recipe()).unwrap();
         let mut subject = Sum::material(device(), &scene.materials[0]).unwrap();
         let report = check(&mut subject, &Options { budget: 20_000, search: true }, &Unobserved).unwrap();
@@ -194,7 +220,8 @@ fn what_is_wrong_is_refused_by_name() {
         ("{}", "base_color"),
         ("{ base_color = 2 }", "[0, 1]"),
         ("{ base_color = 0.5, sheenTint = 1 }", "sheen_tint"),
-        ("{ base_color = 0.5, clearcoat = 0.5 }", "GTR"),
+        ("{ base_color = 0.5, clearcoat = 1.5 }", "[0, 1]"),
+        ("{ base_color = 0.5, clearcoatGloss = 1 }", "clearcoat_gloss"),
     ] {
         let error = scene(&format!("[materials.m]\ndisney = {disney}")).unwrap_err().to_string();
         assert!(error.contains("line 2") && error.contains(why), "{error}");

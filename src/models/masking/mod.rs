@@ -1,6 +1,7 @@
 //! Masking and shadowing of microfacets.
 
 pub(crate) mod ashikhmin_neubelt;
+pub(crate) mod disney_clearcoat;
 pub(crate) mod kelemen;
 pub(crate) mod none;
 mod schlick;
@@ -58,6 +59,11 @@ pub(crate) trait Masking {
     /// G2 = 2 μe x / masking(x, y), for μi = μe x/y, where it does not depend on ωm.
     fn masking<N: Ndf>(_x: f64, _y: f64, _mu_e: f64, _s: &Setting) -> f64 {
         f64::NAN
+    }
+
+    /// What ρ_dh reaches at most, where it is `own` with Smith's Λ of α.
+    fn rho_most(own: f64, _alpha: f64) -> f64 {
+        own
     }
 
     /// G2 of the mirror that α → 0 tends to.

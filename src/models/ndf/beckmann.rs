@@ -30,6 +30,8 @@ impl Ndf for Beckmann {
     const REFERENCE: &'static dyn reference::Ndf = &reference::Beckmann;
     const VALUE_F32: f64 = BECKMANN_F32;
     const MAPS: Option<[Part; 2]> = Some([part!("ndf/beckmann_coarse"), part!("ndf/beckmann_fine")]);
+    /// Measured, of α = 1 where ωi grazes.
+    const RHO_BOUNDS: &'static [(&'static str, f64)] = &[("disney-clearcoat", 2.181)];
 
     fn ndf(h: &Half, hz2: f64, &Setting { alpha, .. }: &Setting) -> f64 {
         let q = (-0.5 * h.ht2 / (alpha * alpha * hz2)).exp() * (h.h2 / (alpha * hz2));
@@ -74,6 +76,7 @@ impl Stretch for Beckmann {
     };
     /// The exponent x ≤ 128 has 5.7 r roundings more.
     const ROUNDINGS: [f64; 2] = [700.0, 730.0];
+    const RHO_BOUNDS: &'static [(&'static str, f64)] = &[("disney-clearcoat", 18.3)];
     const COUNTS: [[usize; 2]; 10] =
         [[4, 6], [6, 8], [8, 11], [12, 20], [18, 34], [28, 72], [36, 98], [36, 98], [36, 98], [36, 98]];
 }

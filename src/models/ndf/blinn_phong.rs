@@ -40,7 +40,7 @@ impl Ndf for BlinnPhong {
     const VALUE_F32: f64 = BLINN_PHONG_F32;
     /// √π, and measured; of α = 1 at grazing.
     const RHO_BOUNDS: &'static [(&'static str, f64)] =
-        &[("smith-correlated", 1.7725), ("smith-separable", 1.345)];
+        &[("smith-correlated", 1.7725), ("smith-separable", 1.345), ("disney-clearcoat", 3.438)];
 
     fn ndf(h: &Half, hz2: f64, &Setting { alpha, .. }: &Setting) -> f64 {
         let exponent = (1.0 - alpha) * (1.0 + alpha) / (alpha * alpha);

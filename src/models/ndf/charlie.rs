@@ -65,6 +65,7 @@ impl Ndf for Charlie {
         ("smith-separable", 2.72),
         ("schlick-ggx-direct", 16.9),
         ("ashikhmin-neubelt", 5.67),
+        ("disney-clearcoat", 19.22),
     ];
 
     fn ndf(h: &Half, hz2: f64, &Setting { alpha, .. }: &Setting) -> f64 {
@@ -88,13 +89,11 @@ impl Ndf for Charlie {
         [counts, _]: [SlopeCounts; 2],
         tolerance: f64,
     ) -> Vec<Sample> {
-        // What has kinks says so of directions too.
-        const { assert!(M::KINKS.most == 0 || M::KINKS.of_directions.is_some()) };
-        charlie_map::samples(fixed.mu, counts, tolerance, M::KINKS.of_directions)
+        charlie_map::samples::<M>(fixed.mu, counts, tolerance)
     }
 
     fn most<M: Masking>([counts, _]: [SlopeCounts; 2]) -> usize {
-        charlie_map::most(counts, M::KINKS.of_directions)
+        charlie_map::most::<M>(counts)
     }
 
     const MEANS: Option<[Mean; 2]> = Some([charlie_map::mean, charlie_map::mean_with_kinks]);

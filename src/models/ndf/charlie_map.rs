@@ -9,7 +9,7 @@
 //! distance 2 dt/√ss at which sin θm turns, so that the point's neighbourhood is seen at every scale.
 
 use crate::mapped::Sample;
-use crate::models::half_vector::DirectionKinks;
+use crate::models::masking::Masking;
 use crate::models::{SlopeCounts, decade};
 use crate::pair::{Azimuth, Pair};
 use crate::quadrature::{Node, gauss_legendre};
@@ -19,15 +19,13 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_6, PI};
 const SEAM: f64 = FRAC_PI_6;
 
 /// Directions and what they weigh: cos θ dω of them.
-pub(super) fn samples(
-    mu: f64,
-    counts: SlopeCounts,
-    tolerance: f64,
-    kinks: Option<DirectionKinks>,
-) -> Vec<Sample> {
+pub(super) fn samples<M: Masking>(mu: f64, counts: SlopeCounts, tolerance: f64) -> Vec<Sample> {
+    // What has kinks says so of directions too.
+    const { assert!(M::KINKS.most == 0 || M::KINKS.of_directions.is_some()) };
+    let kinks = M::KINKS.of_directions;
     let sin = ((1.0 - mu) * (1.0 + mu)).sqrt();
     let own = mu.atan2(sin);
-    let (rule, turns) = (ends(counts.nodes, tolerance), gauss_legendre(azimuths(counts, kinks)));
+    let (rule, turns) = (ends(counts.nodes, tolerance), gauss_legendre(azimuths::<M>(counts)));
     let mut breaks = vec![0.0, SEAM, own, FRAC_PI_2];
     let of_masking = kinks.into_iter().flat_map(|kinks| (kinks.elevations)(own));
     breaks.extend(of_masking.filter(|&psi| 0.0 < psi && psi < FRAC_PI_2));
@@ -84,14 +82,14 @@ pub(super) fn samples(
 }
 
 /// At most so many.
-pub(super) fn most(counts: SlopeCounts, kinks: Option<DirectionKinks>) -> usize {
-    let panels = if kinks.is_some() { (3 + 4) * 2 } else { 3 };
-    panels * counts.nodes * azimuths(counts, kinks)
+pub(super) fn most<M: Masking>(counts: SlopeCounts) -> usize {
+    let panels = if M::KINKS.of_directions.is_some() { (3 + 4) * 2 } else { 3 };
+    panels * counts.nodes * azimuths::<M>(counts)
 }
 
-/// What v-cavity divides by, |h|², takes half as many again: measured as the counts are.
-fn azimuths(counts: SlopeCounts, kinks: Option<DirectionKinks>) -> usize {
-    counts.azimuths + if kinks.is_some() { counts.azimuths.div_ceil(2) } else { 0 }
+/// What maskings of the normal divide by, |h|², takes half as many again: measured as the counts are.
+fn azimuths<M: Masking>(counts: SlopeCounts) -> usize {
+    counts.azimuths + if M::OF_NORMAL { counts.azimuths.div_ceil(2) } else { 0 }
 }
 
 /// cos θ of the directions whose ρ make the mean ∫ ρ 2μ dμ, and their weights: ρ has the same seam and ends. The nodes of each
@@ -119,10 +117,10 @@ fn mean_of(count: usize, tolerance: f64, ends_at: &[f64]) -> Vec<Node> {
 }
 
 /// Counts for tolerances 1e-1 … 1e-10: the error of each count alone, the worst over α ∈ [1/200, 1] and μ ∈ [2⁻²⁴, 1], is
-/// below a third of the tolerance. The worst is α = 1/200 where ωi grazes.
+/// below the tolerance, and but for α = 1/200 where ωi grazes below half of it.
 pub(super) fn counts(tolerance: f64) -> [SlopeCounts; 2] {
     const COUNTS: [[usize; 2]; 10] =
-        [[5, 7], [7, 12], [12, 16], [20, 20], [25, 24], [32, 28], [38, 33], [46, 38], [54, 44], [60, 50]];
+        [[5, 7], [7, 12], [12, 17], [20, 21], [26, 27], [32, 32], [39, 37], [47, 42], [56, 48], [60, 50]];
     let [azimuths, nodes] = COUNTS[decade(tolerance)];
     [SlopeCounts { azimuths, nodes }; 2]
 }
@@ -152,7 +150,11 @@ fn ends(n: usize, tolerance: f64) -> Vec<End> {
 mod tests {
     use super::*;
     use crate::mapped::Fixed;
-    use crate::models::masking::{Masking, v_cavity::VCavity};
+    use crate::models::masking::{
+        ashikhmin_neubelt::AshikhminNeubelt, disney_clearcoat::DisneyClearcoat, kelemen::Kelemen,
+        schlick_ggx_direct::SchlickGgxDirect, smith_correlated::SmithCorrelated,
+        smith_separable::SmithSeparable, v_cavity::VCavity,
+    };
     use crate::models::ndf::charlie::ALPHA_LEAST;
     use crate::models::{self, Integral, Model};
     use crate::setting::Setting;
@@ -167,33 +169,56 @@ mod tests {
 
     /// The truth takes more nodes; the reference agrees with it.
     #[test]
-    fn the_counts_hold_where_masking_has_kinks() {
-        let model = models::find("charlie-v-cavity-schlick").unwrap();
-        let Integral::Mapped(map) = model.integral else { unreachable!() };
-        let worst = (0..60).into_par_iter().map(|k| {
-            // Additive recurrences of two irrationals: even over α's logarithm, and over μ or its logarithm.
-            let (u, v) = ((k as f64 * 0.754_877_666).fract(), (k as f64 * 0.569_840_291).fract());
-            let mu = if k % 2 == 0 { 2f64.powf(-24.0 * u * u) } else { u };
-            let s = ALPHA_LEAST.powf((1.1 * v).min(1.0)).into();
-            let most = SlopeCounts { azimuths: 65, nodes: 70 };
-            let exact = sum(model, samples(mu, most, 1e-10, VCavity::KINKS.of_directions), &s);
-            if k < 12 {
-                let truth = model.reference.unwrap().rho_dh(mu, &s);
-                let error = (exact[0] - truth[0]).abs().max((exact[1] - truth[1]).abs());
-                assert!(error < 5e-10, "μ = {mu}, {s:?}: {error:e}");
+    fn the_counts_hold_for_every_masking() {
+        let models: [(&str, fn(f64, SlopeCounts, f64) -> Vec<Sample>); 7] = [
+            ("charlie", samples::<SmithCorrelated>),
+            ("charlie-smith-separable-schlick", samples::<SmithSeparable>),
+            ("charlie-schlick-ggx-direct-schlick", samples::<SchlickGgxDirect>),
+            ("charlie-ashikhmin-neubelt-schlick", samples::<AshikhminNeubelt>),
+            ("charlie-disney-clearcoat-schlick", samples::<DisneyClearcoat>),
+            ("charlie-kelemen-schlick", samples::<Kelemen>),
+            ("charlie-v-cavity-schlick", samples::<VCavity>),
+        ];
+        let mut failed = Vec::new();
+        for (name, plenty) in models {
+            let model = models::find(name).unwrap();
+            let Integral::Mapped(map) = model.integral else { unreachable!() };
+            let worst = (0..61).into_par_iter().map(|k| {
+                // Additive recurrences of two irrationals: even over α's logarithm, and over μ or its logarithm.
+                let (u, v) = ((k as f64 * 0.754_877_666).fract(), (k as f64 * 0.569_840_291).fract());
+                let mu = if k % 2 == 0 { 2f64.powf(-24.0 * u * u) } else { u };
+                // And the worst place.
+                let (mu, alpha) = match k {
+                    60 => (1e-7, ALPHA_LEAST),
+                    _ => (mu, ALPHA_LEAST.powf((1.1 * v).min(1.0))),
+                };
+                let s = alpha.into();
+                let most = SlopeCounts { azimuths: 70, nodes: 80 };
+                let exact = sum(model, plenty(mu, most, 1e-10), &s);
+                if k < 6 {
+                    let truth = model.reference.unwrap().rho_dh(mu, &s);
+                    let error = (exact[0] - truth[0]).abs().max((exact[1] - truth[1]).abs());
+                    assert!(error < 5e-10, "{name}, μ = {mu}, {s:?}: {error:e}");
+                }
+                let most = model.rho_bound;
+                assert!(exact[0] + exact[1] <= most, "{name}, μ = {mu}, {s:?}: {exact:?} of {most}");
+                let fixed = Fixed { mu, phi: 0.0, factored: false, kinks: Vec::new() };
+                std::array::from_fn(|d| {
+                    let tolerance = 10f64.powi(-1 - d as i32);
+                    let samples = (map.samples)(&fixed, &s, tolerance);
+                    assert!(samples.len() <= (map.most)(&s, tolerance), "{name}");
+                    let rho = sum(model, samples, &s);
+                    (rho[0] - exact[0]).abs().max((rho[1] - exact[1]).abs()) / tolerance
+                })
+            });
+            let worst: [f64; 9] =
+                worst.reduce(|| [0.0; 9], |a, b| std::array::from_fn(|d| f64::max(a[d], b[d])));
+            println!("{name}: {}", worst.map(|share| format!("{share:.2}")).join(" "));
+            if worst.iter().any(|&share| share > 1.0) {
+                failed.push((name, worst));
             }
-            let fixed = Fixed { mu, phi: 0.0, factored: false, kinks: Vec::new() };
-            std::array::from_fn(|d| {
-                let tolerance = 10f64.powi(-1 - d as i32);
-                let samples = (map.samples)(&fixed, &s, tolerance);
-                assert!(samples.len() <= (map.most)(&s, tolerance));
-                let rho = sum(model, samples, &s);
-                (rho[0] - exact[0]).abs().max((rho[1] - exact[1]).abs()) / tolerance
-            })
-        });
-        let worst: [f64; 9] = worst.reduce(|| [0.0; 9], |a, b| std::array::from_fn(|d| f64::max(a[d], b[d])));
-        println!("{}", worst.map(|share| format!("{share:.2}")).join(" "));
-        assert!(worst.iter().all(|&share| share <= 0.5), "{worst:?} of the tolerance");
+        }
+        assert!(failed.is_empty(), "{failed:#?} of the tolerance");
     }
 
     /// Without a panel that ends at v-cavity's seam, 1e-8 is off by 400 times as much at α = 1.
@@ -205,7 +230,7 @@ mod tests {
             let mean = |nodes: Vec<Node>, finer: f64| {
                 let [counts, _] = counts(finer);
                 let at = |n: &Node| {
-                    let rho = sum(model, samples(n.x, counts, finer, VCavity::KINKS.of_directions), &s);
+                    let rho = sum(model, samples::<VCavity>(n.x, counts, finer), &s);
                     rho.map(|rho| rho * n.weight)
                 };
                 nodes.par_iter().map(at).reduce(|| [0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]])

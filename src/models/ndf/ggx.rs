@@ -26,6 +26,9 @@ impl Ndf for Ggx {
     /// α = ±i t_max, at μ = ±2iα/(1 − α²). Measured by `print_the_error_of_spreading`: 1 is too little by a third.
     const BRANCHES: Option<Branches> = Some(Branches { strength: 1.5 });
 
+    /// Measured, of α = 1 where ωi grazes.
+    const RHO_BOUNDS: &'static [(&'static str, f64)] = &[("disney-clearcoat", 3.438)];
+
     fn ndf(h: &Half, hz2: f64, &Setting { alpha, .. }: &Setting) -> f64 {
         let q = alpha * h.h2 / (alpha * alpha * hz2 + h.ht2);
         q * q * FRAC_1_PI
@@ -77,6 +80,7 @@ impl Stretch for Ggx {
         part: Self::TERM.part,
     };
     const ROUNDINGS: [f64; 2] = [60.0, 12.0];
+    const RHO_BOUNDS: &'static [(&'static str, f64)] = &[("disney-clearcoat", 22.56)];
     const COUNTS: [[usize; 2]; 10] =
         [[4, 6], [5, 8], [8, 11], [12, 14], [20, 20], [38, 30], [54, 48], [58, 60], [58, 60], [58, 60]];
 }

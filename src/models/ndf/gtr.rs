@@ -13,7 +13,7 @@
 //! γ = 2 is GGX; 1 is Disney's clearcoat, whose glow reaches far out; 10 has Beckmann's edge, and is as if α were a third.
 //!
 //! Smith's Λ is GGX's with the same α, as Disney has it: these normals' own has no closed form. Disney masks the clearcoat
-//! with α = 1/4 whatever its gloss, which no masking here does.
+//! with α = 1/4 whatever its gloss, which is disney-clearcoat here.
 //!
 //! Kept: finite, not negative, reciprocal; energy where γ ≥ 2. Broken below: the normals that ωe sees from grazing cover
 //! [`side`] of the surface, where Λ has α. So Smith's ρ_dh there is their ratio, which no μ exceeds: of γ = 1, (1 −
@@ -64,9 +64,13 @@ impl Ndf for Gtr {
     /// y ≤ 128 where f is above 1e-30 sr⁻¹.
     const VALUE_F32: f64 = (40.0 + 9.0 * 128.0) / (1 << 24) as f64;
     const INTEGRAL_F32: f64 = crate::plan::INTEGRAL_F32 + PEAK_F32;
-    /// [`side`]/α of γ = 1 and α = 1/1000, where ωi grazes; the others' measured there.
-    const RHO_BOUNDS: &'static [(&'static str, f64)] =
-        &[("smith-correlated", 144.63), ("smith-separable", 144.63), ("schlick-ggx", 144.63)];
+    /// [`side`]/α of γ = 1 and α = 1/1000, where ωi grazes; the others' measured there, and of the clearcoat's at α = 1.
+    const RHO_BOUNDS: &'static [(&'static str, f64)] = &[
+        ("smith-correlated", 144.63),
+        ("smith-separable", 144.63),
+        ("schlick-ggx", 144.63),
+        ("disney-clearcoat", 3.438),
+    ];
 
     fn value_f32(s: &Setting) -> f64 {
         let most = -2.0 * s.parameters[GAMMA] * s.alpha.ln();
@@ -189,8 +193,8 @@ fn end(t_max: f64, digits: f64, s: &Setting) -> f64 {
 mod tests {
     use super::*;
     use crate::models::masking::{
-        ashikhmin_neubelt::AshikhminNeubelt, kelemen::Kelemen, schlick_ggx::SchlickGgx,
-        schlick_ggx_direct::SchlickGgxDirect, smith_correlated::SmithCorrelated,
+        ashikhmin_neubelt::AshikhminNeubelt, disney_clearcoat::DisneyClearcoat, kelemen::Kelemen,
+        schlick_ggx::SchlickGgx, schlick_ggx_direct::SchlickGgxDirect, smith_correlated::SmithCorrelated,
         smith_separable::SmithSeparable, v_cavity::VCavity,
     };
     use crate::models::{self, Integral, Model};
@@ -230,13 +234,14 @@ mod tests {
     fn the_counts_hold_for_every_masking() {
         type Samples = fn(&Fixed, &Setting, [SlopeCounts; 2], f64) -> Vec<Sample>;
         const PLENTY: [SlopeCounts; 2] = [SlopeCounts { azimuths: 45, nodes: 120 }; 2];
-        let models: [(&str, Samples); 7] = [
+        let models: [(&str, Samples); 8] = [
             ("gtr", Gtr::samples::<SmithCorrelated>),
             ("gtr-smith-separable-schlick", Gtr::samples::<SmithSeparable>),
             ("gtr-schlick-ggx-schlick", Gtr::samples::<SchlickGgx>),
             ("gtr-schlick-ggx-direct-schlick", Gtr::samples::<SchlickGgxDirect>),
             ("gtr-ashikhmin-neubelt-schlick", Gtr::samples::<AshikhminNeubelt>),
             ("gtr-kelemen-schlick", Gtr::samples::<Kelemen>),
+            ("gtr-disney-clearcoat-schlick", Gtr::samples::<DisneyClearcoat>),
             ("gtr-v-cavity-schlick", Gtr::samples::<VCavity>),
         ];
         let mut failed = Vec::new();
@@ -284,7 +289,7 @@ mod tests {
 
     /// The bound at a setting.
     fn of_rho(model: &Model, s: &Setting) -> f64 {
-        (Gtr::rho_most(s) * (1.0 + 1e-6)).min(model.rho_bound)
+        ((model.microfacet.unwrap().rho_most)(s) * (1.0 + 1e-6)).min(model.rho_bound)
     }
 
     #[test]

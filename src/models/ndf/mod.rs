@@ -42,7 +42,8 @@ pub(crate) trait Ndf: Sized {
     const INTEGRAL_F32: f64 = crate::plan::INTEGRAL_F32;
     /// f below which f32 has lost digits to underflow, sr⁻¹, where that is earlier than of most.
     const FAINT: Option<f64> = None;
-    /// The maskings with which ρ_dh exceeds 1, and its bound there: none, unless Λ is not Smith's of these normals.
+    /// The maskings with which ρ_dh exceeds 1, and its bound there: none, unless Λ is not Smith's of these normals, or not of
+    /// their α.
     const RHO_BOUNDS: &'static [(&'static str, f64)] = &[];
     /// cos θ at which ρ(μ) is not analytic, if there is such a place between grazing and the normal.
     const SEAM: Option<f64> = None;
@@ -57,7 +58,7 @@ pub(crate) trait Ndf: Sized {
         Self::VALUE_F32
     }
 
-    /// What ρ_dh reaches at most at a setting, where that is less than with the worst.
+    /// What ρ_dh reaches at most at a setting with Λ of its α, where that is less than with the worst.
     fn rho_most(_s: &Setting) -> f64 {
         f64::INFINITY
     }

@@ -29,6 +29,8 @@ pub(crate) trait Stretch: Ndf {
     /// of the larger α to the other. A component of the tangential half vector is off by 4 √2 roundings of its length, which
     /// is at worst r/2 times as much of ht² (stretched); D has that twice (GGX), or times its exponent (Beckmann).
     const ROUNDINGS: [f64; 2];
+    /// As [`Ndf::RHO_BOUNDS`], measured where α = 1 and the aspect is 100: along grooves of αx = 10.
+    const RHO_BOUNDS: &'static [(&'static str, f64)];
     /// Azimuths of each of eight panels and nodes of each azimuth, for tolerances 1e-1 … 1e-10: their errors alone are below
     /// half of these, worst over μ, φ, α and aspects of 0.01 to 100, down to 1e-7. Finer ones would take more turns of a loop
     /// than every driver runs.
@@ -65,6 +67,7 @@ impl<N: Stretch> Ndf for Stretched<N> {
         },
     ];
     const STRETCHES: bool = true;
+    const RHO_BOUNDS: &'static [(&'static str, f64)] = <N as Stretch>::RHO_BOUNDS;
     const VALUE_F32: f64 = (N::ROUNDINGS[0] + N::ROUNDINGS[1]) / (1 << 24) as f64;
 
     fn value_f32(s: &Setting) -> f64 {

@@ -1,6 +1,7 @@
 //! Masking and shadowing.
 
 pub(super) mod ashikhmin_neubelt;
+pub(super) mod disney_clearcoat;
 pub(super) mod kelemen;
 pub(super) mod none;
 pub(super) mod schlick_ggx;

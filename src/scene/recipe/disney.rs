@@ -7,13 +7,14 @@
 //! ```text
 //! f = (1 − m) (C ((1 − subsurface) burley + subsurface disney-subsurface) + sheen mix(1, T, sheen_tint) disney-sheen)
 //!   + ggx-anisotropic, smith-separable, F0 = mix(0.08 specular mix(1, T, specular_tint), C, m), F90 = 1
+//!   + clearcoat/4 gtr, disney-clearcoat, γ = 1, F0 = 0.04, F90 = 1, α = mix(0.1, 0.001, clearcoat_gloss)
 //! αx = max(0.001, roughness²/aspect),  αy = max(0.001, roughness² aspect),  aspect = √(1 − 0.9 anisotropic)
 //! ```
 //!
 //! Masking is of these α, as `disney.brdf` has it today; the notes of 2012 took it of α = (1/2 + roughness/2)². The
-//! clearcoat, a GTR lobe with γ = 1, is refused.
+//! clearcoat's is of α = 1/4.
 
-use super::{Fields, Item, channels};
+use super::{Item, channels};
 use crate::error::Result;
 use crate::factor::Compensation;
 use crate::models;
@@ -47,8 +48,7 @@ pub(super) fn lobes(item: Item) -> Result<Vec<MaterialLobe>> {
     let [roughness, anisotropic] = [number("roughness", 0.5)?, number("anisotropic", 0.0)?];
     let [specular_tint, sheen, sheen_tint] =
         [number("specular_tint", 0.0)?, number("sheen", 0.0)?, number("sheen_tint", 0.5)?];
-    refuse_clearcoat(&fields)?;
-    number("clearcoat_gloss", 1.0)?;
+    let [clearcoat, gloss] = [number("clearcoat", 0.0)?, number("clearcoat_gloss", 1.0)?];
 
     let luminance = 0.3 * base[0] + 0.6 * base[1] + 0.1 * base[2];
     let tint = base.map(|c| if luminance > 0.0 { c / luminance } else { 1.0 });
@@ -83,16 +83,14 @@ pub(super) fn lobes(item: Item) -> Result<Vec<MaterialLobe>> {
     let specular = lobe(model.name, Some(Distribution::constant((x * y).powf(0.25))), [f0, plain]);
     let parameters = if x == y { Vec::new() } else { vec![("aspect".into(), [x / y; 3])] };
     lobes.push(MaterialLobe { parameters, ..specular });
-    Ok(lobes)
-}
 
-fn refuse_clearcoat(fields: &Fields) -> Result<()> {
-    match fields.get("clearcoat") {
-        Some(item) if item.number_in([0.0, 1.0])? > 0.0 => {
-            Err(item.refuse("its lobe, GTR with γ = 1, is not here; leave it away for the rest"))
-        }
-        _ => Ok(()),
+    if clearcoat > 0.0 {
+        let model = models::find("gtr")?.with_terms(Some("disney-clearcoat"), Some("schlick"))?;
+        let rough = Some(Distribution::constant(mix(0.1, LEAST, gloss).sqrt()));
+        let coat = lobe(model.name, rough, [0.04, 1.0].map(|f| [0.25 * clearcoat * f; 3]));
+        lobes.push(MaterialLobe { parameters: vec![("gamma".into(), [1.0; 3])], ..coat });
     }
+    Ok(lobes)
 }
 
 fn mix(a: f64, b: f64, t: f64) -> f64 {
