@@ -1,6 +1,6 @@
 //! The cross-check: a table's texels against the f64 reference.
 
-use crate::axis::Variable;
+use crate::axis::{Axis, Variable};
 use crate::error::Result;
 use crate::plan::{Lobe, TablePlan};
 use crate::points::{self, delta_phi};
@@ -66,9 +66,7 @@ pub(crate) struct Comparison<'a> {
     table: &'a TablePlan,
     /// The texels to compare, sorted; `None`: all of them.
     sample: Option<Vec<usize>>,
-    error: TableError,
-    squares: f64,
-    compared: usize,
+    tally: Tally,
 }
 
 impl<'a> Comparison<'a> {
@@ -79,18 +77,10 @@ impl<'a> Comparison<'a> {
             Check::All => None,
             Check::Sample(n) => Some(sample(&table.shape(), n)),
         };
-        let error = TableError {
-            kind: table.quantity.error,
-            floor: (table.quantity.error == ErrorKind::Relative).then(|| value_floor(&table.lobes)),
-            estimate,
-            measured_max: None,
-            measured_rms: None,
-            texels_checked: 0,
-            underflows: None,
-            interpolation: None,
-            worst: BTreeMap::new(),
-        };
-        Self { table, sample, error, squares: 0.0, compared: 0 }
+        let kind = table.quantity.error;
+        let floor = (kind == ErrorKind::Relative).then(|| value_floor(&table.lobes));
+        let tally = Tally::new(TableError::unmeasured(kind, floor, estimate));
+        Self { table, sample, tally }
     }
 
     /// Compares the texels `piece`, whose values `value` gives, from 0. The next piece must begin where it
@@ -101,7 +91,7 @@ impl<'a> Comparison<'a> {
         value: &(impl Fn(usize) -> f64 + Sync),
         tick: &(impl Fn(f64) -> Result<()> + Sync),
     ) -> Result<()> {
-        let (table, floor) = (self.table, self.error.floor);
+        let table = self.table;
         let channels = table.channels.len();
         let (texels, all): (Vec<_>, _) = match &self.sample {
             None => (piece.clone().collect(), table.texels()),
@@ -116,37 +106,56 @@ impl<'a> Comparison<'a> {
             .map(|&texel| {
                 let truth = reference(table, texel);
                 let values = ((texel - piece.start) * channels..).map(value);
-                let found: Vec<_> = truth
-                    .into_iter()
-                    .zip(values)
-                    .map(|(truth, value)| {
-                        let difference = (value - truth).abs();
-                        let difference = floor.map_or(difference, |floor| difference / truth.max(floor));
-                        (if difference.is_nan() { f64::INFINITY } else { difference }, truth, value)
-                    })
-                    .collect();
+                let found: Vec<_> =
+                    truth.into_iter().zip(values).map(|(truth, value)| (value, truth)).collect();
                 tick(share)?;
                 Ok((texel, found))
             })
             .collect::<Result<Vec<_>>>()?;
-        for (texel, found) in found {
-            self.error.texels_checked += 1;
-            for (channel, (difference, truth, value)) in found.into_iter().enumerate() {
-                self.squares += difference * difference;
-                self.compared += 1;
-                if self.error.measured_max.is_none_or(|max| difference >= max) {
-                    self.error.measured_max = Some(difference);
-                    let coordinates = table.axes.iter().zip(indices(&table.shape(), texel));
-                    let worst = &mut self.error.worst;
-                    *worst =
-                        coordinates.map(|(axis, k)| (axis.variable.name().into(), axis.values[k])).collect();
-                    worst.insert("channel".into(), channel as f64);
-                    worst.insert("value".into(), value);
-                    worst.insert("reference".into(), truth);
-                }
+        found.into_iter().for_each(|(texel, found)| self.tally.add(&table.axes, texel, found));
+        Ok(())
+    }
+
+    /// The error of all that was added.
+    pub fn finish(self) -> TableError {
+        self.tally.finish()
+    }
+}
+
+/// Differences from the truth as they are found: the largest, where that is, and their mean square.
+pub(crate) struct Tally {
+    error: TableError,
+    squares: f64,
+    compared: usize,
+}
+
+impl Tally {
+    /// None yet; `error` says of which kind they are.
+    pub fn new(error: TableError) -> Self {
+        Self { error, squares: 0.0, compared: 0 }
+    }
+
+    /// Adds a texel: for each channel its value and the truth. A NaN is an infinite difference.
+    pub fn add(&mut self, axes: &[Axis], texel: usize, channels: impl IntoIterator<Item = (f64, f64)>) {
+        let Self { error, squares, compared } = self;
+        error.texels_checked += 1;
+        for (channel, (value, truth)) in channels.into_iter().enumerate() {
+            let difference = (value - truth).abs();
+            let difference = error.floor.map_or(difference, |floor| difference / truth.abs().max(floor));
+            let difference = if difference.is_nan() { f64::INFINITY } else { difference };
+            *squares += difference * difference;
+            *compared += 1;
+            if error.measured_max.is_none_or(|max| difference >= max) {
+                error.measured_max = Some(difference);
+                let shape: Vec<_> = axes.iter().map(Axis::len).collect();
+                let coordinates = axes.iter().zip(indices(&shape, texel));
+                error.worst =
+                    coordinates.map(|(axis, k)| (axis.variable.name().into(), axis.values[k])).collect();
+                error.worst.insert("channel".into(), channel as f64);
+                error.worst.insert("value".into(), value);
+                error.worst.insert("reference".into(), truth);
             }
         }
-        Ok(())
     }
 
     /// The error of all that was added.
@@ -174,6 +183,12 @@ pub fn reference(table: &TablePlan, texel: usize) -> Vec<f64> {
         }
     }
     channels
+}
+
+/// ρ_dh of a lobe by the reference at a direction of incidence, before its weights.
+pub(crate) fn reference_albedo(lobe: &Lobe, theta_i: f64, phi_i: f64) -> [f64; 2] {
+    let at = BTreeMap::from([(Variable::ThetaI, theta_i), (Variable::PhiI, phi_i)]);
+    reference_lobe(Evaluation::Directional, lobe, &at)
 }
 
 /// f of a lobe by the reference at a pair of directions, before its weights; NaN where it has none.
@@ -266,7 +281,6 @@ fn gcd(a: usize, b: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::axis::Axis;
     use crate::{models, quantity};
 
     #[test]

@@ -69,6 +69,9 @@ pub struct TableError {
     pub measured_rms: Option<f64>,
     /// How many texels were compared.
     pub texels_checked: usize,
+    /// What they were compared with, where that is not the f64 reference.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub against: Option<String>,
     /// Values below the normal range of half floats, where they lose relative precision.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub underflows: Option<usize>,
@@ -76,6 +79,24 @@ pub struct TableError {
     pub interpolation: Option<InterpolationError>,
     /// Where the largest difference lies, axis by axis, with both values.
     pub worst: BTreeMap<String, f64>,
+}
+
+impl TableError {
+    /// Nothing was compared yet.
+    pub(crate) fn unmeasured(kind: ErrorKind, floor: Option<f64>, estimate: Option<f64>) -> Self {
+        Self {
+            kind,
+            floor,
+            estimate,
+            measured_max: None,
+            measured_rms: None,
+            texels_checked: 0,
+            against: None,
+            underflows: None,
+            interpolation: None,
+            worst: BTreeMap::new(),
+        }
+    }
 }
 
 /// Whether errors are differences or ratios.

@@ -1,6 +1,7 @@
-// Irradiance of a map of piecewise-constant radiance: one invocation a normal and a row. The twin,
-// `src/light/irradiance.rs`, says why it is done so. What is above the surface comes from sums that the host
-// keeps, each as two f32 whose sum is good to 48 bits, as a sun's are subtracted from one another.
+// Irradiance of a map of piecewise-constant radiance: one invocation a row and a normal, neighbours having the same row, as
+// neighbouring normals have much the same to do there. The twin, `src/light/irradiance.rs`, says why it is done so. What is
+// above the surface comes from sums that the host keeps, each as two f32 whose sum is good to 48 bits, as a sun's are
+// subtracted from one another.
 
 struct Job {
     first: u32,   // normal of this dispatch
@@ -8,9 +9,13 @@ struct Job {
     rows: u32,
     width: u32,
     split: u32,
+    block: u32,   // columns between sums
     kept: u32,    // sums of a row
+    skip: u32,    // crossed columns of a row that earlier dispatches took
+    most: u32,    // and those that this one takes
     step: f32,    // Δψ
     half: f32,    // Δθ/2
+    margin: f32,
 }
 
 struct Row {
@@ -18,13 +23,6 @@ struct Row {
     middle: vec2f, // and in the middle
     across: f32,   // ∫ sin² θ dθ
     along: f32,    // ∫ cos θ sin θ dθ
-}
-
-struct Column {
-    edge: vec2f,   // (cos, sin) of ψ at the left border
-    middle: vec2f, // and in the middle
-    arc: vec2f,    // ∫ (cos ψ, sin ψ) dψ
-    pad: vec2f,
 }
 
 struct Normal {
@@ -47,21 +45,18 @@ struct Sums {
 @group(0) @binding(1) var<storage, read_write> values: array<f32>;
 @group(0) @binding(2) var<storage, read> normals: array<Normal>;
 @group(0) @binding(3) var<storage, read> rows: array<Row>;
-@group(0) @binding(4) var<storage, read> columns: array<Column>;
+@group(0) @binding(4) var<storage, read> columns: array<vec4f>; // (cos, sin) of ψ in the middle; ∫ (cos ψ, sin ψ) dψ
 @group(0) @binding(5) var<storage, read> texels: array<f32>;
 @group(0) @binding(6) var<storage, read> sums: array<vec2f>;
 
-const BLOCK = 16u;
-const MARGIN = 1.5;
 const TINY = 1e-30;
 const PI = 3.14159265;
+const NODE = 0.57735027;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let invocation = min(id.x, job.count * job.rows - 1u);
-    let n = normals[job.first + invocation / job.rows];
-    let row = invocation % job.rows;
-    let e = of_row(n, row);
+    let e = of_row(normals[job.first + invocation % job.count], invocation / job.count);
     values[3u * invocation] = e.x;
     values[3u * invocation + 1u] = e.y;
     values[3u * invocation + 2u] = e.z;
@@ -77,39 +72,32 @@ fn of_row(n: Normal, row: u32) -> vec3f {
     let at = rows[row];
     let a = reach(n, at.edges.xy);
     let b = reach(n, at.edges.zw);
-    let inner = min(a, b) - MARGIN;
-    let outer = max(a, b) + MARGIN;
-    let width = i32(job.width);
-    // Columns first..last are above, and beside them begin..first and last..end may be crossed.
-    let centre = i32(floor(n.place + 0.5));
-    var begin = i32(floor(n.place - outer));
-    var end = i32(ceil(n.place + outer));
-    if end - begin > width {
-        begin = centre - width / 2;
-        end = begin + width;
-    }
-    var first = i32(ceil(n.place - inner));
-    var last = i32(floor(n.place + inner));
-    if inner <= 0.0 || first > last {
-        first = centre;
-        last = centre;
-    }
-    first = clamp(first, begin, end);
-    last = clamp(last, begin, end);
+    let inner = min(a, b);
+    let outer = max(a, b);
+    // Columns first..last are above. The others have at most one piece each side of the normal's azimuth.
+    let sure = max(inner - job.margin, 0.0);
+    let first = i32(ceil(n.place - sure));
+    let last = i32(floor(n.place + sure));
+    let begin = i32(floor(n.place - outer - job.margin));
+    let end = i32(ceil(n.place + outer + job.margin));
 
-    let start = wrap(first);
-    let count = u32(last - first);
-    let before_the_edge = min(count, job.width - start);
-    let s = run(row, start, start + before_the_edge);
-    let t = run(row, 0u, count - before_the_edge);
-    var sum = at.across * (n.n.x * (s.x + t.x) + n.n.y * (s.y + t.y)) + n.n.z * at.along * (s.z + t.z);
-    for (var k = begin; k < first; k++) {
-        let column = wrap(k);
-        sum += texel(row, column) * cell(n, at, column);
+    var sum = vec3f();
+    if job.skip == 0u {
+        let start = wrap(first);
+        let count = u32(max(last - first, 0));
+        let before_the_edge = min(count, job.width - start);
+        let s = run(row, start, start + before_the_edge);
+        let t = run(row, 0u, count - before_the_edge);
+        sum = at.across * (n.n.x * (s.x + t.x) + n.n.y * (s.y + t.y)) + n.n.z * at.along * (s.z + t.z);
     }
-    for (var k = last; k < end; k++) {
+    let left = u32(first - begin);
+    let stop = min(left + u32(end - last), job.skip + job.most);
+    for (var t = job.skip; t < stop; t++) {
+        let is_left = t < left;
+        let k = select(last + i32(t - left), begin + i32(t), is_left);
+        let side = select(1.0, -1.0, is_left);
         let column = wrap(k);
-        sum += texel(row, column) * cell(n, at, column);
+        sum += texel(row, column) * crossed(n, at, k, columns[column].xy, side, inner, outer);
     }
     return sum;
 }
@@ -134,13 +122,13 @@ fn arc_cosine(x: f32) -> f32 {
 
 /// The sums of columns `first` to before `end`.
 fn run(row: u32, first: u32, end: u32) -> Sums {
-    let a = (first + BLOCK - 1u) / BLOCK;
-    let b = end / BLOCK;
+    let a = (first + job.block - 1u) / job.block;
+    let b = end / job.block;
     if a >= b {
         return direct(row, first, end);
     }
-    let s = direct(row, first, a * BLOCK);
-    let t = direct(row, b * BLOCK, end);
+    let s = direct(row, first, a * job.block);
+    let t = direct(row, b * job.block, end);
     return Sums(s.x + t.x + kept(row, a, b, 0u), s.y + t.y + kept(row, a, b, 3u), s.z + t.z + kept(row, a, b, 6u));
 }
 
@@ -148,7 +136,7 @@ fn direct(row: u32, first: u32, end: u32) -> Sums {
     var s = Sums();
     for (var column = first; column < end; column++) {
         let light = texel(row, column);
-        let arc = columns[column].arc;
+        let arc = columns[column].zw;
         s.x += light * arc.x;
         s.y += light * arc.y;
         s.z += light * job.step;
@@ -160,54 +148,48 @@ fn direct(row: u32, first: u32, end: u32) -> Sums {
 fn kept(row: u32, a: u32, b: u32, axis: u32) -> vec3f {
     let left = (row * job.kept + a) * 9u + axis;
     let right = (row * job.kept + b) * 9u + axis;
-    var d = vec3f();
-    for (var c = 0u; c < 3u; c++) {
-        let difference = sums[right + c] - sums[left + c];
-        d[c] = difference.x + difference.y;
-    }
-    return d;
+    let x = sums[right] - sums[left];
+    let y = sums[right + 1u] - sums[left + 1u];
+    let z = sums[right + 2u] - sums[left + 2u];
+    return vec3f(x.x + x.y, y.x + y.y, z.x + z.y);
 }
 
-/// n·ω.
-fn height(n: Normal, theta: vec2f, psi: vec2f) -> f32 {
-    return n.n.z * theta.x + theta.y * (n.n.x * psi.x + n.n.y * psi.y);
+/// ∫ max(0, n·ω) dω over a cell, of what is on one side of the normal's azimuth: up to `inner` the row is above, up to
+/// `outer` crossed. Offsets are columns from that azimuth.
+fn crossed(n: Normal, at: Row, k: i32, psi: vec2f, side: f32, inner: f32, outer: f32) -> f32 {
+    // Of the column's middle, from the azimuth, away from it.
+    let middle = side * (f32(k) + 0.5 - n.place);
+    let turn = 0.5 * f32(job.width);
+    let ends = clamp(clamp(vec3f(0.0, inner, outer), vec3f(middle - 0.5), vec3f(middle + 0.5)), vec3f(), vec3f(turn));
+    let full = 0.5 * vec2f(ends.y + ends.x, ends.y - ends.x);
+    let b = across(n, psi, side * job.step * (full.x - middle), NODE * job.step * full.y);
+    var sum = full.y * (2.0 * n.n.z * at.along + (b.x + b.y) * at.across);
+    let half = 0.5 * (ends.z - ends.y) / f32(job.split);
+    for (var j = 0u; j < job.split; j++) {
+        let centre = ends.y + half * f32(2u * j + 1u);
+        let b = across(n, psi, side * job.step * (centre - middle), NODE * job.step * half);
+        sum += half * (meridian(n.n.z, b.x, at.middle) + meridian(n.n.z, b.y, at.middle));
+    }
+    return job.step * sum;
 }
 
-/// ∫ max(0, n·ω) dω over a cell.
-fn cell(n: Normal, at: Row, column: u32) -> f32 {
-    let own = columns[column];
-    let right = columns[column + 1u].edge;
-    let corners = vec4f(
-        height(n, at.edges.xy, own.edge),
-        height(n, at.edges.xy, right),
-        height(n, at.edges.zw, own.edge),
-        height(n, at.edges.zw, right),
-    );
-    if max(max(corners.x, corners.y), max(corners.z, corners.w)) <= 0.0 {
-        return 0.0;
-    }
-    if min(min(corners.x, corners.y), min(corners.z, corners.w)) >= 0.0 {
-        return at.across * (n.n.x * own.arc.x + n.n.y * own.arc.y) + n.n.z * at.along * job.step;
-    }
-    var sum = 0.0;
-    let size = vec2f(job.half, 0.5 * job.step);
-    for (var i = 0u; i < job.split; i++) {
-        for (var j = 0u; j < job.split; j++) {
-            let low = size * (2.0 * vec2f(f32(i), f32(j)) / f32(job.split) - 1.0);
-            let high = size * (2.0 * vec2f(f32(i + 1u), f32(j + 1u)) / f32(job.split) - 1.0);
-            let a = corner(n, at.middle, own.middle, low);
-            let b = corner(n, at.middle, own.middle, vec2f(high.x, low.y));
-            let c = corner(n, at.middle, own.middle, high);
-            let d = corner(n, at.middle, own.middle, vec2f(low.x, high.y));
-            sum += triangle(n, at.middle, own.middle, a, b, c) + triangle(n, at.middle, own.middle, a, c, d);
-        }
-    }
-    return sum;
+/// B of two meridians, `by` from the one at (cos ψ, sin ψ) and as far as `apart` beyond and before that.
+fn across(n: Normal, psi: vec2f, by: f32, apart: f32) -> vec2f {
+    return vec2f(dot(n.n.xy, turned(psi, by - apart)), dot(n.n.xy, turned(psi, by + apart)));
 }
 
-/// A point of a cell from its middle, and n·ω there.
-fn corner(n: Normal, theta: vec2f, psi: vec2f, point: vec2f) -> vec3f {
-    return vec3f(point, height(n, turned(theta, point.x), turned(psi, point.y)));
+/// ∫ max(0, n·ω) sin θ dθ over a row, n·ω = nz cos θ + B sin θ.
+fn meridian(z: f32, b: f32, theta: vec2f) -> f32 {
+    let height = (z * theta.x + b * theta.y) / max(sqrt(z * z + b * b), TINY);
+    // The horizon from the row's middle: below it where the normal points up.
+    let q = height * height;
+    let horizon = clamp(height * (1.0 + q * (1.0 / 6.0 + q * 0.075)), -job.half, job.half);
+    let ends = select(vec2f(-horizon, job.half), vec2f(-job.half, horizon), z >= 0.0);
+    let middle = 0.5 * (ends.x + ends.y);
+    let half = 0.5 * (ends.y - ends.x);
+    let t = turned(theta, middle - NODE * half);
+    let u = turned(theta, middle + NODE * half);
+    return half * ((z * t.x + b * t.y) * t.y + (z * u.x + b * u.y) * u.y);
 }
 
 /// (cos, sin) of an angle that is larger by `by`, at most π/64: series to their last digits.
@@ -216,46 +198,4 @@ fn turned(angle: vec2f, by: f32) -> vec2f {
     let cos = 1.0 - q * (0.5 - q / 24.0);
     let sin = by * (1.0 - q * (1.0 / 6.0 - q / 120.0));
     return vec2f(angle.x * cos - angle.y * sin, angle.y * cos + angle.x * sin);
-}
-
-/// What is above the horizon in a triangle: the corner that is alone on its side comes first.
-fn triangle(n: Normal, theta: vec2f, psi: vec2f, a: vec3f, b: vec3f, c: vec3f) -> f32 {
-    let above = vec3<bool>(a.z > 0.0, b.z > 0.0, c.z > 0.0);
-    if all(above) {
-        return midpoints(n, theta, psi, a.xy, b.xy, c.xy);
-    }
-    if !any(above) {
-        return 0.0;
-    }
-    if above.x == above.y {
-        return alone(n, theta, psi, c, a, b);
-    }
-    if above.x == above.z {
-        return alone(n, theta, psi, b, c, a);
-    }
-    return alone(n, theta, psi, a, b, c);
-}
-
-fn alone(n: Normal, theta: vec2f, psi: vec2f, a: vec3f, b: vec3f, c: vec3f) -> f32 {
-    let p = a.xy + a.z / (a.z - b.z) * (b.xy - a.xy);
-    let q = a.xy + a.z / (a.z - c.z) * (c.xy - a.xy);
-    if a.z > 0.0 {
-        return midpoints(n, theta, psi, a.xy, p, q);
-    }
-    return midpoints(n, theta, psi, p, b.xy, c.xy) + midpoints(n, theta, psi, p, c.xy, q);
-}
-
-/// The rule of the sides' midpoints.
-fn midpoints(n: Normal, theta: vec2f, psi: vec2f, a: vec2f, b: vec2f, c: vec2f) -> f32 {
-    let u = b - a;
-    let v = c - a;
-    let area = 0.5 * abs(u.x * v.y - u.y * v.x);
-    let sum = node(n, theta, psi, 0.5 * (a + b)) + node(n, theta, psi, 0.5 * (b + c)) + node(n, theta, psi, 0.5 * (c + a));
-    return area / 3.0 * sum;
-}
-
-/// n·ω sin θ.
-fn node(n: Normal, theta: vec2f, psi: vec2f, point: vec2f) -> f32 {
-    let t = turned(theta, point.x);
-    return t.y * height(n, t, turned(psi, point.y));
 }

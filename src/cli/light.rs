@@ -71,7 +71,7 @@ pub struct Args {
     /// Files to write for each table, separated by commas
     #[arg(long, value_name = "F", value_delimiter = ',', default_value = "exr,png")]
     format: Vec<Format>,
-    /// Texels of each table to compare with the f64 reference: a count, or all [default: 256; of radiance 8]
+    /// Texels of each table to compare with the f64 reference: a count, or all [default: 256; of radiance and radiosity 8]
     #[arg(long, value_name = "N")]
     check: Option<Check>,
     /// No picture of the light and of lit spheres
@@ -276,7 +276,7 @@ fn make(
 ) -> Result<(Vec<Table>, Value)> {
     const NORMALS: [usize; 2] = [32, 64];
     let sampled = args.check.unwrap_or(match args.quantity {
-        Quantity::Radiance => Check::Sample(8),
+        Quantity::Radiance | Quantity::Radiosity => Check::Sample(8),
         _ => Check::Sample(256),
     });
     let order =
@@ -306,7 +306,7 @@ fn make(
         }
         (Quantity::Sh, _) => {
             let irradiance = order.irradiance(normals(args, spread)?, &mut stages)?;
-            let ([sh, convolved], off) = order.harmonics(&irradiance)?;
+            let ([sh, convolved], off) = order.harmonics(&irradiance, &mut stages)?;
             truncation = json!(off);
             vec![sh, convolved, irradiance]
         }

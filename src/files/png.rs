@@ -207,7 +207,8 @@ fn header(canvas: &mut Canvas, table: &Table, notes: &[String]) {
     let kind = if error.kind == ErrorKind::Absolute { "absolute" } else { "relative" };
     let measured = match error.measured_max {
         Some(max) => {
-            format!("largest {kind} difference from the reference {max:.1e}, {} texels", error.texels_checked)
+            let against = error.against.as_deref().unwrap_or("the reference");
+            format!("largest {kind} difference from {against} {max:.1e}, {} texels", error.texels_checked)
         }
         None => "not checked against the reference".into(),
     };

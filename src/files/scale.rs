@@ -29,7 +29,7 @@ impl Scale {
         Self { range: if a < b { [a, b] } else { [a - 0.5, b + 0.5] }, kind }
     }
 
-    /// A scale that holds the values: logarithmic if allowed and they span more than a decade.
+    /// A scale that holds the values: logarithmic if allowed, none is negative and they span more than a decade.
     pub fn of_values(values: impl Iterator<Item = f64> + Clone, log: bool) -> Self {
         let finite = values.filter(|v| v.is_finite());
         let max = finite.clone().fold(f64::NEG_INFINITY, f64::max);
@@ -38,7 +38,7 @@ impl Scale {
             return Self { range: [0.0, 1.0], kind: Kind::Linear }; // nothing to show
         }
         let least = finite.filter(|&v| v > 0.0).fold(max, f64::min);
-        if log && max > 10.0 * least {
+        if log && min >= 0.0 && max > 10.0 * least {
             let range = [least.max(max * 10f64.powi(-DECADES)), max];
             return Self { range, kind: Kind::Log };
         }

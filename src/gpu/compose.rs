@@ -46,6 +46,8 @@ pub enum Kernel {
     Pack,
     /// Irradiance of an environment map.
     Irradiance,
+    /// Nine spherical-harmonic coefficients of an environment map.
+    Harmonics,
     /// Nothing but stores.
     Fill,
     /// Nothing but arithmetic.
@@ -151,6 +153,7 @@ impl Kernel {
             (Self::Fill, _) => &[part!("probe/fill")],
             (Self::MultiplyAdd, _) => &[part!("probe/multiply_add")],
             (Self::Irradiance, _) => &[part!("light/irradiance")],
+            (Self::Harmonics, _) => &[part!("light/harmonics")],
             (Self::Canary, _) => &[part!("probe/canary")],
         }
     }
@@ -161,7 +164,8 @@ impl Kernel {
 
     /// Whether it knows no job, model or precision: its file is all of it.
     fn is_plain(self) -> bool {
-        matches!(self, Self::Irradiance | Self::Pack | Self::Fill | Self::MultiplyAdd | Self::Canary)
+        use Kernel::{Canary, Fill, Harmonics, Irradiance, MultiplyAdd, Pack};
+        matches!(self, Irradiance | Harmonics | Pack | Fill | MultiplyAdd | Canary)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::radiometry::Cell;
+use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 
 /// An environment map: the function that is constant over each texel's cell, with the cell's exact solid angle.
@@ -155,10 +156,10 @@ impl Environment {
     }
 
     /// The same function with at least so many columns and rows: each texel repeated.
-    pub(crate) fn at_least(&self, width: usize, height: usize) -> Self {
+    pub(crate) fn at_least(&self, width: usize, height: usize) -> Cow<'_, Self> {
         let [across, down] = [width.div_ceil(self.width), height.div_ceil(self.height)];
         if across <= 1 && down <= 1 {
-            return self.clone();
+            return Cow::Borrowed(self);
         }
         let rows = self.texels.chunks_exact(self.width);
         let texels = rows.flat_map(|row| {
@@ -166,7 +167,8 @@ impl Environment {
             std::iter::repeat_n(wide, down).flatten()
         });
         let texels = texels.collect();
-        Self { width: self.width * across, height: self.height * down, texels, rotation: self.rotation }
+        let (width, height) = (self.width * across, self.height * down);
+        Cow::Owned(Self { width, height, texels, rotation: self.rotation })
     }
 
     /// A map of at most so many columns and rows, each texel the mean radiance of what it covers, weighed with solid
@@ -255,7 +257,8 @@ mod tests {
 
     #[test]
     fn the_same_function_on_a_finer_grid() {
-        let (map, fine) = (map(), map().at_least(20, 9));
+        let map = map();
+        let fine = map.at_least(20, 9);
         assert_eq!((fine.width, fine.height), (24, 12));
         for k in 0..100 {
             let v = direction(0.03 * f64::from(k), 0.61 * f64::from(k));

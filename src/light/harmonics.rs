@@ -18,6 +18,8 @@
 //! for any light, as it is a sum of such.
 
 use super::{Environment, Light, Sky};
+use crate::bake::Evaluator;
+use crate::error::Result;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -67,7 +69,7 @@ pub fn evaluate(coefficients: &Coefficients, direction: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|c| (0..9).map(|k| coefficients[k][c] * basis[k]).sum())
 }
 
-/// The coefficients of a light's radiance.
+/// The coefficients of a light's radiance, by the CPU.
 pub fn coefficients(light: &Light) -> Coefficients {
     match light {
         Light::Constant(radiance) => {
@@ -89,7 +91,7 @@ pub fn coefficients(light: &Light) -> Coefficients {
             })
         }
         Light::Sky(sky) => of_sky(sky),
-        Light::Map(map) => of_map(map),
+        Light::Map(map) => Factors::new(map).sum(),
     }
 }
 
@@ -106,50 +108,83 @@ fn of_sky(sky: &Sky) -> Coefficients {
     coefficients
 }
 
-/// Over each cell the basis is in closed form: products of powers of sin θ and cos θ, and of 1, cos and sin of φ and 2φ.
-fn of_map(map: &Environment) -> Coefficients {
-    let [y0, y1, y2, y20, y22] = normalisation();
-    let columns: Vec<[f64; 5]> = (0..map.width())
-        .map(|column| {
+/// Over each cell the basis is in closed form: products of powers of sin θ and cos θ, and of 1, cos and sin of φ and 2φ. A
+/// coefficient is the sum over rows of a factor times one of five sums over columns.
+///
+/// The twin of `shaders/light/harmonics.wgsl`, in f64, and all that the shader is given.
+pub(crate) struct Factors<'a> {
+    pub map: &'a Environment,
+    /// For each row that of each coefficient.
+    pub rows: Vec<[f64; 9]>,
+    /// For each column ∫ cos φ, sin φ, cos 2φ, sin 2φ.
+    pub columns: Vec<[f64; 4]>,
+    /// Δφ.
+    pub step: f64,
+}
+
+impl<'a> Factors<'a> {
+    pub fn new(map: &'a Environment) -> Self {
+        let column = |column: usize| {
             let [a, b] = map.cell(0, column).phi;
             let of = |f: fn(f64) -> f64, n: f64| (f(n * b) - f(n * a)) / n;
-            // ∫ 1, cos φ, sin φ, cos 2φ, sin 2φ
-            [b - a, of(f64::sin, 1.0), -of(f64::cos, 1.0), of(f64::sin, 2.0), -of(f64::cos, 2.0)]
-        })
-        .collect();
-    let row = |row: usize| {
-        let mut sums = [[0.0; 3]; 5];
-        for (column, weights) in columns.iter().enumerate() {
-            let texel = map.texel(row, column).map(f64::from);
-            for (sum, weight) in sums.iter_mut().zip(weights) {
-                (0..3).for_each(|c| sum[c] += weight * texel[c]);
-            }
+            [of(f64::sin, 1.0), -of(f64::cos, 1.0), of(f64::sin, 2.0), -of(f64::cos, 2.0)]
+        };
+        let [y0, y1, y2, y20, y22] = normalisation();
+        let row = |row: usize| {
+            let [t0, t1] = [map.theta(row), map.theta(row + 1)];
+            let cubes = |f: fn(f64) -> f64| (f(t1).powi(3) - f(t0).powi(3)) / 3.0;
+            let solid = t0.cos() - t1.cos();
+            let along = 0.5 * (t1.sin().powi(2) - t0.sin().powi(2));
+            // ∫ of sin θ times: cos² θ, sin θ, sin θ cos θ, sin² θ.
+            let cos2 = -cubes(f64::cos);
+            let across = crate::radiometry::sin2([t0, t1]);
+            let mixed = cubes(f64::sin);
+            let sin2 = solid - cos2;
+            [
+                y0 * solid,
+                y1 * across,
+                y1 * along,
+                y1 * across,
+                0.5 * y2 * sin2,
+                y2 * mixed,
+                y20 * (3.0 * cos2 - solid),
+                y2 * mixed,
+                y22 * sin2,
+            ]
+        };
+        Self {
+            map,
+            rows: (0..map.height()).map(row).collect(),
+            columns: (0..map.width()).map(column).collect(),
+            step: 2.0 * PI / map.width() as f64,
         }
-        let [t0, t1] = [map.theta(row), map.theta(row + 1)];
-        let cubes = |f: fn(f64) -> f64| (f(t1).powi(3) - f(t0).powi(3)) / 3.0;
-        let solid = t0.cos() - t1.cos();
-        let along = 0.5 * (t1.sin().powi(2) - t0.sin().powi(2));
-        // ∫ of sin θ times: cos² θ, sin θ, sin θ cos θ, sin² θ.
-        let cos2 = -cubes(f64::cos);
-        let across = crate::radiometry::sin2([t0, t1]);
-        let mixed = cubes(f64::sin);
-        let sin2 = solid - cos2;
-        let [one, cos, sin, cos_2, sin_2] = sums;
-        let times = |factor: f64, sums: [f64; 3]| sums.map(|x| factor * x);
-        [
-            times(y0 * solid, one),
-            times(y1 * across, sin),
-            times(y1 * along, one),
-            times(y1 * across, cos),
-            times(0.5 * y2 * sin2, sin_2),
-            times(y2 * mixed, sin),
-            times(y20 * (3.0 * cos2 - solid), one),
-            times(y2 * mixed, cos),
-            times(y22 * sin2, cos_2),
-        ]
-    };
-    let rows: Vec<Coefficients> = (0..map.height()).into_par_iter().map(row).collect();
-    rows.iter().fold([[0.0; 3]; 9], |sum, row| {
-        std::array::from_fn(|k| std::array::from_fn(|c| sum[k][c] + row[k][c]))
-    })
+    }
+
+    /// The coefficients.
+    pub fn sum(&self) -> Coefficients {
+        /// The sum over columns that each coefficient takes: of 1, cos φ, sin φ, cos 2φ, sin 2φ.
+        const OF: [usize; 9] = [0, 2, 0, 1, 4, 2, 0, 1, 3];
+        let row = |row: usize| -> Coefficients {
+            let mut sums = [[0.0; 3]; 5];
+            for (column, &[cos, sin, cos2, sin2]) in self.columns.iter().enumerate() {
+                let texel = self.map.texel(row, column).map(f64::from);
+                for (sum, weight) in sums.iter_mut().zip([self.step, cos, sin, cos2, sin2]) {
+                    (0..3).for_each(|c| sum[c] += weight * texel[c]);
+                }
+            }
+            std::array::from_fn(|k| sums[OF[k]].map(|sum| self.rows[row][k] * sum))
+        };
+        let rows: Vec<_> = (0..self.map.height()).into_par_iter().map(row).collect();
+        rows.iter().fold([[0.0; 3]; 9], |sum, row| {
+            std::array::from_fn(|k| std::array::from_fn(|c| sum[k][c] + row[k][c]))
+        })
+    }
+
+    /// By whichever evaluator.
+    pub fn of(&self, evaluator: &Evaluator) -> Result<Coefficients> {
+        match evaluator {
+            Evaluator::Device(device) => device.harmonics(self),
+            Evaluator::Cpu => Ok(self.sum()),
+        }
+    }
 }

@@ -433,6 +433,7 @@ fn table(name: &str, axes: Vec<Axis>, channels: &[&str], f: impl Fn(&[f64]) -> f
             measured_max: Some(3e-7),
             measured_rms: Some(1e-7),
             texels_checked: 256,
+            against: None,
             underflows: None,
             interpolation: None,
             worst: BTreeMap::from([("theta_i".into(), 0.25)]),

@@ -212,7 +212,7 @@ fn a_museum_lights_as_the_reference_says() {
     );
     assert!(table.error.estimate.unwrap() < 1e-4, "{:?}", table.error);
     order.within_tolerance(&table).unwrap();
-    let (_, off) = order.harmonics(&table).unwrap();
+    let (_, off) = order.harmonics(&table, &mut Stages::default()).unwrap();
     println!("three bands miss E by {off:.4} of ∫ L dω");
     assert!(off > 1e-3 && off < TRUNCATION, "{off}");
 }

@@ -112,16 +112,11 @@ fn table(
     parameters: BTreeMap<String, f64>,
     worst: Option<f64>,
 ) -> Table {
+    let kind = if worst.is_some() { ErrorKind::Relative } else { ErrorKind::Absolute };
     let error = TableError {
-        kind: if worst.is_some() { ErrorKind::Relative } else { ErrorKind::Absolute },
-        floor: None,
-        estimate: None,
         measured_max: worst,
-        measured_rms: None,
         texels_checked: values.len(),
-        underflows: None,
-        interpolation: None,
-        worst: BTreeMap::new(),
+        ..TableError::unmeasured(kind, None, None)
     };
     Table {
         name: name.into(),

@@ -1,10 +1,10 @@
-//! What light does to a surface, in f64, by other ways than tables of it: irradiance along meridians, exitant radiance by
-//! splitting texels until halves agree.
+//! Irradiance by its definition: of a map along its meridians, of a disk and a sky in rings.
 
-use super::quadrature::integrate;
-use crate::light::{Disk, Environment, Frame, Light, Sky, direction, dot};
+use super::peak_of;
+use crate::light::{Disk, Environment, Light, Sky};
+use crate::reference::quadrature::integrate;
 use glam::DVec3;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Of an integral's own scale, how far the irradiance may be off.
 const RELATIVE: f64 = 1e-8;
@@ -83,12 +83,6 @@ impl<'a> Meridians<'a> {
     }
 }
 
-/// Where A cos θ + B sin θ is largest: in (−π/2, 3π/2], so that what is above 0 in [0, π] is within a quarter turn of it.
-fn peak_of(a: f64, b: f64) -> f64 {
-    let peak = b.atan2(a);
-    if peak < -FRAC_PI_2 { peak + TAU } else { peak }
-}
-
 /// An antiderivative of cos θ sin θ.
 fn cos_sin(theta: f64) -> f64 {
     0.5 * theta.sin().powi(2)
@@ -165,126 +159,3 @@ trait Pipe: Sized {
 }
 
 impl Pipe for f64 {}
-
-/// Le(ωe) = ∫ f L cos θi dωi of a surface in a frame under a map, R, G, B. `f` is the BRDF in the surface's frame, R,
-/// G, B, of (ωi, ωe) as local vectors' (θ, φ) each; `width` is about that of its lobe around the mirror direction, rad.
-///
-/// Each texel is integrated by Gauss–Legendre of 3 × 3, down meridians of which only what is above the surface counts,
-/// and again in quarters; where both differ, the quarters are done so, each by itself.
-pub fn exitant(
-    map: &Environment,
-    frame: &Frame,
-    exit: (f64, f64),
-    width: f64,
-    f: &dyn Fn((f64, f64), (f64, f64)) -> [f64; 3],
-) -> [f64; 3] {
-    let wo = direction(exit.0, exit.1);
-    let mirror = frame.to_world([-wo[0], -wo[1], wo[2]]);
-    let surface = Surface { frame, exit, mirror, width, f };
-    let rough = |share: f64| {
-        let mut sum = [0.0; 3];
-        for row in 0..map.height() {
-            for column in 0..map.width() {
-                let cell = map.cell(row, column);
-                let texel = map.texel(row, column).map(f64::from);
-                let most = texel.into_iter().fold(0.0, f64::max);
-                if most == 0.0 || surface.is_below(cell.theta, cell.phi) {
-                    continue;
-                }
-                let g = surface.adaptive(cell.theta, cell.phi, share / most, 0);
-                sum = std::array::from_fn(|c| sum[c] + texel[c] * g[c]);
-            }
-        }
-        sum
-    };
-    // First for its size.
-    let size = rough(f64::INFINITY).into_iter().fold(0.0, f64::max);
-    let texels = (map.width() * map.height()) as f64;
-    // Differences of texels have no common sign: they add up as their squares.
-    rough(SPLIT * size.max(f64::MIN_POSITIVE) / texels.sqrt())
-}
-
-/// Of Le, what all texels together may be off.
-const SPLIT: f64 = 1e-5;
-/// Quarters of quarters: to 1e-9 of a texel.
-const DEPTH: u32 = 30;
-
-struct Surface<'a> {
-    frame: &'a Frame,
-    exit: (f64, f64),
-    /// Of the world.
-    mirror: [f64; 3],
-    width: f64,
-    f: &'a dyn Fn((f64, f64), (f64, f64)) -> [f64; 3],
-}
-
-impl Surface<'_> {
-    /// ∫ f max(0, cos θi) dω over a cell, until halves agree to `tolerance`.
-    fn adaptive(&self, theta: [f64; 2], phi: [f64; 2], tolerance: f64, depth: u32) -> [f64; 3] {
-        let (t, p) = (0.5 * (theta[0] + theta[1]), 0.5 * (phi[0] + phi[1]));
-        let size = (theta[1] - theta[0]).max((phi[1] - phi[0]) * t.sin());
-        let coarse = self.gauss(theta, phi);
-        let centre = direction(t, p);
-        let away: f64 = (0..3).map(|k| (centre[k] - self.mirror[k]).powi(2)).sum::<f64>().sqrt();
-        let near = away < 2.0 * size && size > 0.25 * self.width;
-        if tolerance.is_infinite() && !near {
-            return coarse;
-        }
-        let quarters = [
-            ([theta[0], t], [phi[0], p]),
-            ([theta[0], t], [p, phi[1]]),
-            ([t, theta[1]], [phi[0], p]),
-            ([t, theta[1]], [p, phi[1]]),
-        ];
-        if !near {
-            let fine = quarters.map(|(theta, phi)| self.gauss(theta, phi));
-            let fine: [f64; 3] = std::array::from_fn(|c| fine.iter().map(|g| g[c]).sum());
-            let off = (0..3).map(|c| (fine[c] - coarse[c]).abs()).fold(0.0, f64::max);
-            if off <= tolerance || depth == DEPTH {
-                return fine;
-            }
-        }
-        if depth == DEPTH {
-            return coarse;
-        }
-        let fine = quarters.map(|(theta, phi)| self.adaptive(theta, phi, 0.5 * tolerance, depth + 1));
-        std::array::from_fn(|c| fine.iter().map(|g| g[c]).sum())
-    }
-
-    fn gauss(&self, [t0, t1]: [f64; 2], [p0, p1]: [f64; 2]) -> [f64; 3] {
-        let normal = self.frame.normal();
-        let mut sum = [0.0; 3];
-        for (x, wx) in GAUSS {
-            let phi = 0.5 * (p0 + p1) + 0.5 * (p1 - p0) * x;
-            // n·ω = A cos θ + B sin θ > 0 within a quarter turn of its peak.
-            let peak = peak_of(normal[2], normal[0] * phi.cos() + normal[1] * phi.sin());
-            let (low, high) = (t0.max(peak - FRAC_PI_2), t1.min(peak + FRAC_PI_2));
-            if low >= high {
-                continue;
-            }
-            for (y, wy) in GAUSS {
-                let theta = 0.5 * (low + high) + 0.5 * (high - low) * y;
-                let local = self.frame.to_local(direction(theta, phi));
-                if local[2] <= 0.0 {
-                    continue;
-                }
-                let incident = (local[0].hypot(local[1]).atan2(local[2]), local[1].atan2(local[0]));
-                let weight = wx * wy * 0.25 * (p1 - p0) * (high - low) * theta.sin() * local[2];
-                let f = (self.f)(incident, self.exit);
-                sum = std::array::from_fn(|c| sum[c] + weight * f[c]);
-            }
-        }
-        sum
-    }
-
-    /// Whether all of a cell is surely below: its middle is farther than it is wide.
-    fn is_below(&self, theta: [f64; 2], phi: [f64; 2]) -> bool {
-        let centre = direction(0.5 * (theta[0] + theta[1]), 0.5 * (phi[0] + phi[1]));
-        let size = (theta[1] - theta[0]) + (phi[1] - phi[0]).min(TAU);
-        dot(centre, self.frame.normal()) < -size
-    }
-}
-
-/// Gauss–Legendre of three nodes on [−1, 1] (Abramowitz & Stegun 1964, table 25.4).
-const GAUSS: [(f64, f64); 3] =
-    [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];

@@ -1,0 +1,195 @@
+//! Tables of what light does: quantity × axes × light, or light on a material, in the same [`Table`] as all others.
+
+mod harmonics;
+mod irradiance;
+mod radiance;
+mod radiosity;
+
+use super::exitant::Integrated;
+use super::{Frame, Light};
+use crate::axis::Axis;
+use crate::bake::{Evaluator, Observer};
+use crate::check::{Check, Tally, sample};
+use crate::error::{Error, Result};
+use crate::plan::{Lobe, constant_lobes};
+use crate::scene::{Distribution, Material};
+use crate::storage::Storage;
+use crate::table::{ErrorKind, Table, TableError};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+/// Relative errors are taken of the value or of this share of the largest in the table, whichever is more: where no
+/// light comes from, nothing is relative to it.
+pub const FLOOR: f64 = 1e-3;
+
+/// What is baked, and how well.
+pub struct Order<'a> {
+    /// What evaluates.
+    pub evaluator: &'a Evaluator,
+    /// The light.
+    pub light: &'a Light,
+    /// What it is called: a file, or the words that describe it.
+    pub name: &'a str,
+    /// Relative, with [`FLOOR`].
+    pub tolerance: f64,
+    /// How many texels to compare with the reference.
+    pub check: Check,
+    /// Who watches.
+    pub observer: &'a dyn Observer,
+}
+
+/// Values of a table before it is one.
+struct Values {
+    rgb: Vec<[f64; 3]>,
+    rule: String,
+    precision: &'static str,
+    estimate: Option<f64>,
+    seconds: f64,
+}
+
+/// What some texels really are, R, G and B.
+type Truths = Vec<(usize, [f64; 3])>;
+
+impl Order<'_> {
+    fn precision(&self) -> &'static str {
+        match self.evaluator {
+            Evaluator::Device(_) => "f32",
+            Evaluator::Cpu => "f64",
+        }
+    }
+
+    /// What the texels that are to be compared really are; none of a material without a reference.
+    fn truths(
+        &self,
+        axes: &[Axis],
+        lobes: &[Lobe],
+        truth: &(impl Fn(usize) -> [f64; 3] + Sync),
+    ) -> Result<Truths> {
+        let shape: Vec<_> = axes.iter().map(Axis::len).collect();
+        let texels = match self.check {
+            _ if lobes.iter().any(|lobe| lobe.model.reference.is_none()) => Vec::new(),
+            Check::All => (0..shape.iter().product()).collect(),
+            Check::Sample(n) => sample(&shape, n),
+        };
+        let share = 1.0 / texels.len().max(1) as f64;
+        let found = texels.into_par_iter().map(|texel| {
+            let truth = truth(texel);
+            self.observer.advance(share)?;
+            Ok((texel, truth))
+        });
+        found.collect()
+    }
+
+    /// The table, looked at and compared with what is known of it, relative to the value or to `floor` of the largest.
+    fn table(
+        &self,
+        [name, unit, subject]: [&str; 3],
+        axes: &[Axis],
+        values: Values,
+        floor: f64,
+        truths: &[(usize, [f64; 3])],
+    ) -> Result<Table> {
+        let Values { rgb: values, rule, precision, estimate, seconds } = values;
+        let floor = floor * largest(&values);
+        let stored: Vec<f32> = values.as_flattened().iter().map(|&x| x as f32).collect();
+        let mut tally = Tally::new(TableError::unmeasured(ErrorKind::Relative, Some(floor), estimate));
+        for (texel, truth) in truths {
+            let channels = stored[3 * texel..].iter().map(|&x| f64::from(x));
+            tally.add(axes, *texel, truth.iter().zip(channels).map(|(&truth, value)| (value, truth)));
+        }
+        Ok(Table {
+            name: name.into(),
+            quantity: name.into(),
+            unit: unit.into(),
+            subject: subject.into(),
+            parameters: BTreeMap::new(),
+            axes: axes.to_vec(),
+            channels: ["R", "G", "B"].map(String::from).to_vec(),
+            values: stored.into(),
+            rule,
+            storage: Storage::F32,
+            bilinear: None,
+            precision: precision.into(),
+            error: tally.finish(),
+            seconds,
+        })
+    }
+
+    /// The same of what is not negative: all but harmonics.
+    fn light_table(
+        &self,
+        words: [&str; 3],
+        axes: &[Axis],
+        values: Values,
+        truths: &[(usize, [f64; 3])],
+    ) -> Result<Table> {
+        let table = self.table(words, axes, values, FLOOR, truths)?;
+        table.check_sane().map_err(|error| match error {
+            Error::Promise(why) => Error::Promise(why.replace("a BRDF is", "light is")),
+            error => error,
+        })?;
+        Ok(table)
+    }
+
+    /// Whether a table meets the tolerance, as far as it was measured.
+    ///
+    /// # Errors
+    /// [`Error::Promise`] with the worst texel.
+    pub fn within_tolerance(&self, table: &Table) -> Result<()> {
+        let off = table.error.measured_max.into_iter().chain(table.error.estimate).fold(0.0, f64::max);
+        if off <= self.tolerance {
+            return Ok(());
+        }
+        Err(Error::Promise(format!(
+            "table {}: its error is {off:.2e} where {:.0e} is allowed ({:?}); allow more, or bake with --device cpu",
+            table.name, self.tolerance, table.error.worst
+        )))
+    }
+}
+
+const IRRADIANCE: &str = "W m⁻²";
+const RADIANCE: &str = "W sr⁻¹ m⁻²";
+
+/// The lobes of a material, at a roughness if one is given in place of its own.
+///
+/// # Errors
+/// When it varies.
+pub fn lobes_of(material: &Material, roughness: Option<f64>) -> Result<Vec<Lobe>> {
+    let mut material = material.clone();
+    for lobe in &mut material.lobes {
+        if let (Some(own), Some(given)) = (&mut lobe.roughness, roughness) {
+            *own = Distribution::constant(given);
+        }
+    }
+    constant_lobes(&material).map_err(|why| Error::input(format!("{}: {why}", material.name)))
+}
+
+/// Does something, and adds the seconds that it took.
+fn timed<T>(seconds: &mut f64, act: impl FnOnce() -> T) -> T {
+    let start = Instant::now();
+    let done = act();
+    *seconds += start.elapsed().as_secs_f64();
+    done
+}
+
+fn normals(axes: &[Axis; 2]) -> Vec<[f64; 3]> {
+    frames(&axes[0], &axes[1]).iter().map(Frame::normal).collect()
+}
+
+fn frames(theta: &Axis, phi: &Axis) -> Vec<Frame> {
+    let row = |&theta: &f64| phi.values.iter().map(move |&phi| Frame::new(theta, phi));
+    theta.values.iter().flat_map(row).collect()
+}
+
+/// The largest share of a value that is in doubt.
+fn estimate(values: &[Integrated]) -> f64 {
+    let mean = |one: &Integrated| one.value.iter().sum::<f64>() / 3.0;
+    let floor = FLOOR * values.iter().map(mean).fold(0.0, f64::max);
+    let share = |one: &Integrated| one.error / mean(one).max(floor).max(f64::MIN_POSITIVE);
+    values.iter().map(share).fold(0.0, f64::max)
+}
+
+fn largest(values: &[[f64; 3]]) -> f64 {
+    values.as_flattened().iter().map(|x| x.abs()).fold(f64::MIN_POSITIVE, f64::max)
+}

@@ -1,0 +1,79 @@
+//! Radiosity over normals, and what share of the irradiance it is.
+
+use super::radiance::weighed;
+use super::{IRRADIANCE, Order, Truths, Values, estimate, frames, lobes_of, timed};
+use crate::axis::Axis;
+use crate::bake::Stages;
+use crate::check::{Check, reference_albedo};
+use crate::error::Result;
+use crate::light::{Frame, exitant};
+use crate::plan::Lobe;
+use crate::reference::light as reference;
+use crate::scene::Scene;
+use crate::table::Table;
+
+impl Order<'_> {
+    /// M of a material over normals, and M/E. `axes` are θn and φn.
+    ///
+    /// # Errors
+    /// When the material varies or tells azimuths from each other, the device fails, or a value is negative or not finite.
+    pub fn radiosity(
+        &self,
+        scene: &Scene,
+        material: &str,
+        axes: [Axis; 2],
+        stages: &mut Stages,
+    ) -> Result<[Table; 2]> {
+        let lobes = lobes_of(scene.material(material)?, None)?;
+        // E is held to the reference with M.
+        let unchecked = Order { check: Check::Sample(0), ..*self };
+        let irradiance = unchecked.irradiance(axes.clone(), stages)?;
+        self.observer.begin(&format!("{material} radiosity"));
+        let frames = frames(&axes[0], &axes[1]);
+        let tolerance = 0.25 * self.tolerance;
+        let mut seconds = 0.0;
+        let found = timed(&mut seconds, || {
+            let lit = (scene, material);
+            exitant::radiosity(self.evaluator, lit, self.light, &frames, tolerance, self.observer)
+        })?;
+        stages.dispatch += seconds;
+        let subject = format!("{material} under {}", self.name);
+        let values = |rgb, estimate| Values {
+            rgb,
+            rule: "cells, 2 × 2 nodes of ρ_dh, quartered until they agree".into(),
+            precision: self.precision(),
+            estimate,
+            seconds,
+        };
+        let share =
+            |m: [f64; 3], e: [f64; 3]| std::array::from_fn(|c| if e[c] > 0.0 { m[c] / e[c] } else { 0.0 });
+        let e = |texel| std::array::from_fn(|c| irradiance.value(texel, c));
+        let ratio = found.iter().enumerate().map(|(texel, one)| share(one.value, e(texel)));
+        let ratio = values(ratio.collect(), None);
+        let radiosity = values(found.iter().map(|one| one.value).collect(), Some(estimate(&found)));
+        self.observer.begin(&format!("checking {material} radiosity"));
+        timed(&mut stages.check, || {
+            let m = self.radiosity_truths(&axes, &lobes, &frames)?;
+            let normals: Vec<_> = frames.iter().map(Frame::normal).collect();
+            let e = if m.is_empty() { Vec::new() } else { self.irradiance_truths(&axes, &normals)? };
+            let shares: Vec<_> =
+                m.iter().zip(&e).map(|(&(texel, m), &(_, e))| (texel, share(m, e))).collect();
+            Ok([
+                self.light_table(["radiosity", IRRADIANCE, &subject], &axes, radiosity, &m)?,
+                self.light_table(["reflected_share", "1", &subject], &axes, ratio, &shares)?,
+            ])
+        })
+    }
+
+    /// M of some texels by the reference.
+    fn radiosity_truths(&self, axes: &[Axis], lobes: &[Lobe], frames: &[Frame]) -> Result<Truths> {
+        let known = lobes.iter().all(|lobe| lobe.model.reference.is_some());
+        if !known || self.check == Check::Sample(0) {
+            return Ok(Vec::new());
+        }
+        let all: Vec<_> = lobes.iter().collect();
+        let albedo =
+            reference::Albedo::new(&|theta_i| weighed(&all, |lobe| reference_albedo(lobe, theta_i, 0.0)));
+        self.truths(axes, lobes, &|texel| reference::radiosity(self.light, &frames[texel], &albedo))
+    }
+}
