@@ -5,8 +5,8 @@
 //! integrand; what is put together at run time is names.
 
 use super::fresnel::{
-    Fresnel, conductor::Conductor, dielectric::Dielectric, f82::F82, none::Constant, schlick::Schlick,
-    thin_film::ThinFilm,
+    Fresnel, conductor::Conductor, dielectric::Dielectric, f82::F82, generalized_schlick::GeneralizedSchlick,
+    none::Constant, schlick::Schlick, thin_film::ThinFilm,
 };
 use super::half_vector::{self, stretched};
 use super::masking::{
@@ -88,7 +88,7 @@ parts! {
     ndfs: Ggx, Beckmann, Stretched<Ggx>, Stretched<Beckmann>, Gtr, BlinnPhong, Charlie;
     maskings: SmithCorrelated, SmithSeparable, SchlickGgx, SchlickGgxDirect, VCavity, Kelemen, AshikhminNeubelt, DisneyClearcoat,
         Unmasked;
-    fresnels: Schlick, Constant, Dielectric, Conductor, F82, ThinFilm;
+    fresnels: Schlick, GeneralizedSchlick, Constant, Dielectric, Conductor, F82, ThinFilm;
 }
 
 /// GGX with the defaults.
@@ -475,6 +475,7 @@ mod tests {
                 "thickness" => vec![0.0, 250.0, 700.0, 2000.0],
                 "film_eta" => vec![1.05, 1.3, 2.0],
                 "f0" => vec![0.0, 0.04, 0.5, 1.0],
+                "exponent" => vec![2.0, 2.1, 2.5, 2.9, 4.5, 5.0, 7.3, 10.0],
                 _ => vec![
                     parameter.range[0],
                     0.5 * (parameter.range[0] + parameter.range[1]),

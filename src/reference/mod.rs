@@ -49,8 +49,8 @@ pub use diffuse::{
 pub use directions::{Angles, MIN_MU};
 pub use factor::Product;
 pub(crate) use fresnel::{
-    Fresnel, conductor::Conductor, dielectric::Dielectric, f82::F82, none::Constant, schlick::Schlick,
-    thin_film::ThinFilm,
+    Fresnel, conductor::Conductor, dielectric::Dielectric, f82::F82, generalized_schlick::GeneralizedSchlick,
+    none::Constant, schlick::Schlick, thin_film::ThinFilm,
 };
 pub(crate) use masking::{
     Masking,

@@ -192,6 +192,41 @@ fn values_agree_with_the_reference() {
     }
 }
 
+/// Schlick's with any exponent: 5 is Schlick's, the mean is 2/((p + 1)(p + 2)) of F90, and values and integrals agree with
+/// the reference, of whole exponents and of others.
+#[test]
+fn any_exponent_of_schlick_agrees_with_the_reference() {
+    const EXPONENTS: [f64; 5] = [2.0, 2.1, 3.7, 5.0, 10.0];
+    let of = ["ggx", "mirror"].map(|name| model(name).with_terms(None, Some("generalized-schlick")).unwrap());
+    for evaluator in evaluators() {
+        let rho = |model, set: &[(&str, f64)]| {
+            let plan = basis(&SPLIT_SUM, model, &[0.1, 0.5], vec![listed(Mu, &[1e-3, 0.1, 0.5, 1.0])]);
+            bake(evaluator, &with(plan, set), Check::Sample(0))
+        };
+        let (own, schlick) = (rho(of[0], &[("exponent", 5.0)]), rho(model("ggx"), &[]));
+        for (a, b) in own.values.iter().zip(schlick.values.iter()) {
+            assert!((a - b).abs() <= 2.0 * INTEGRAL_F32, "{a} and {b}");
+        }
+        for p in EXPONENTS {
+            let plan = with(basis(&RHO_HH, of[1], &[], vec![]), &[("exponent", p)]);
+            let mean = bake(evaluator, &plan, Check::All).values.iter().collect::<Vec<_>>();
+            let grazing = 2.0 / ((p + 1.0) * (p + 2.0));
+            let off = (mean[0] - (1.0 - grazing)).abs().max((mean[1] - grazing).abs());
+            assert!(off <= INTEGRAL_F32, "{p}: {mean:?}, {grazing}");
+        }
+    }
+    for p in EXPONENTS {
+        let set = [("exponent", p)];
+        let plan = with(basis(&BRDF, of[0], &EXTREME_ROUGHNESS, extreme_angles()), &set);
+        for (evaluator, budget) in evaluators().into_iter().zip(value_budgets(of[0])) {
+            let error = bake(evaluator, &plan, Check::All).error;
+            println!("{p}: {:.2e}", error.measured_max.unwrap());
+            assert!(error.measured_max.unwrap() <= budget, "{p}: {error:?}, {budget:e}");
+        }
+        assert_term_meets_every_tolerance(of, |plan| with(plan, &set));
+    }
+}
+
 /// Integrals of every index meet the tolerance that is asked for, on both evaluators, with and without a lobe.
 #[test]
 fn integrals_meet_every_tolerance() {

@@ -19,7 +19,7 @@
 //! formula is negative for small F0, and renderers clamp it; no metal needs that (Cr, Fe and Ti have 0.74 to 0.8, Ag,
 //! Al, Au and Cu 0.88 and above; over all η and k with η² + k² ≥ 1 and F0 > 0.1 it is 0.59 or more). At 0.55 both
 //! components are still positive with digits to spare, so no clamp is needed and f stays linear in its weights. The
-//! exponent is Schlick's 5: as a parameter it would take a `pow`, which f32 gets wrong by hundreds of ULP.
+//! exponent is Schlick's 5: another one costs digits in f32 (`generalized-schlick`).
 //!
 //! Limits: f82 = 1 is Schlick. 2 ∫ F μ dμ = (20 F0 + F90)/21 − (1 − f82) S(1/7) / (126 · 1/7 · (6/7)⁶).
 //!

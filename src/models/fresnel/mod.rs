@@ -3,6 +3,7 @@
 pub(crate) mod conductor;
 pub(crate) mod dielectric;
 pub(crate) mod f82;
+pub(crate) mod generalized_schlick;
 pub(crate) mod metals;
 pub(crate) mod none;
 pub(crate) mod schlick;

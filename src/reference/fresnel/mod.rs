@@ -4,6 +4,7 @@ mod complex;
 pub(super) mod conductor;
 pub(super) mod dielectric;
 pub(super) mod f82;
+pub(super) mod generalized_schlick;
 pub(super) mod none;
 pub(super) mod schlick;
 pub(super) mod thin_film;
