@@ -3,7 +3,7 @@
 fn lobe(p: Pair, a: Azimuth, alpha: real, row: real) -> real2 {
     let h = half_vector(p, a);
     let root = root_of_power(h, p.hz2, alpha);
-    return fresnel(h.c, h.one_minus_c) * ((row * root) * root / h.c);
+    return fresnel(h.c, h.one_minus_c) * ((row / h.c * root) * root);
 }
 
 /// With n + 1 = (2 − α²)/α², in units of 2⁶⁰.

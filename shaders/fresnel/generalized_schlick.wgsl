@@ -1,12 +1,13 @@
 // Schlick 1994, eq. 15, with another exponent, as MaterialX's generalized_schlick: F = F0 (1 − xᵖ) + F90 xᵖ, x = 1 − c.
 
 /// (1 − xᵖ, xᵖ) for c = ωi·ωm and x = 1 − c. With y = p ln 1/x = p ln(1 + c/x), which has its digits where c is small
-/// and where x is, xᵖ = e^(−y) and 1 − xᵖ = y · (1 − e^(−y))/y;
+/// and where x is, xᵖ = e^(−y) and 1 − xᵖ, of a small y by (1 − e^(−y))/y;
 /// the former as a square, as the exponential ends where f32 does, which a narrow lobe makes large.
 fn fresnel(c: real, x: real) -> real2 {
     let y = parameter(4u) * log1p_quotient(real4(c), real4(x)).x;
     let root = exp_neg(real4(0.5 * y)).x;
-    return real2(y * mean_exp_neg(y), root * root);
+    let power = root * root;
+    return real2(select(1.0 - power, y * mean_exp_neg(y), y < 0.5), power);
 }
 
 /// For integrals: A + B …
