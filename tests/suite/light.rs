@@ -403,6 +403,76 @@ fn equation_12_radiosity() {
     close(m / e, ggx.weights[0][0] * a + ggx.weights[0][1] * b, 1e-6);
 }
 
+/// The lights that are no maps.
+fn smooth_lights() -> [Light; 2] {
+    let sky = Sky { zenith: [1.0, 0.5, 2.0], horizon: [2.0, 3.0, 0.1], ground: [0.3, 0.2, 0.4] };
+    let disk = Disk { direction: direction(1.3, PI), radius: 0.4, radiance: [1.0, 2.0, 0.5] };
+    [Light::Sky(sky), Light::Disk(disk)]
+}
+
+/// Le under a disk and a sky, up to where the surface is seen at 90°, against the definition: each tolerance is met.
+#[test]
+fn disks_and_skies_send_back_what_the_definition_says() {
+    let material = scene("model = \"ggx\", roughness = 0.5, f0 = [0.9, 0.5, 0.04]");
+    let thetas = [0.0, 0.6, 1.2, 1.5, FRAC_PI_2];
+    for light in smooth_lights() {
+        for evaluator in evaluators() {
+            for tolerance in [1e-2, 1e-3] {
+                let axes = [
+                    listed(Variable::ThetaN, &[0.2]),
+                    listed(Variable::PhiN, &[0.5]),
+                    listed(Variable::ThetaE, &thetas),
+                    listed(Variable::PhiE, &[0.3]),
+                ];
+                let order = Order { tolerance, ..order(evaluator, &light, Check::All) };
+                let material = material.material("m").unwrap();
+                let [exact, _] = order.radiance(material, &[0.1, 0.5], axes, &mut Stages::default()).unwrap();
+                println!("{tolerance}: {:?} {:?}", exact.error.measured_max, exact.error.estimate);
+                assert_eq!(exact.error.texels_checked, 2 * thetas.len());
+                order.within_tolerance(&exact).unwrap();
+            }
+        }
+    }
+}
+
+/// M and M/E over normals, each texel against ∫ ρ_dh L cos θi dωi by the reference's ρ_dh.
+#[test]
+fn radiosity_is_held_to_the_reference() {
+    let one = scene("model = \"ggx\", roughness = 0.5, f0 = [0.9, 0.5, 0.04]");
+    let lights = smooth_lights().into_iter().chain([Light::Map(sun_and_sky(64, 32))]);
+    for light in lights {
+        for evaluator in evaluators() {
+            let order = order(evaluator, &light, Check::All);
+            let tables = order.radiosity(&one, "m", grid(3, 2), &mut Stages::default()).unwrap();
+            for table in &tables {
+                println!("{}: {:?}", table.name, table.error.measured_max);
+                assert_eq!(table.error.texels_checked, 6);
+                order.within_tolerance(table).unwrap();
+            }
+        }
+    }
+}
+
+/// Nine coefficients of a map on the device: as near to the reference as their roundings say.
+#[test]
+fn harmonics_on_the_device_are_the_references() {
+    for (width, height) in [(64, 32), (1024, 8)] {
+        let light = Light::Map(sun_and_sky(width, height));
+        for evaluator in evaluators() {
+            let order = order(evaluator, &light, Check::All);
+            let irradiance = order.irradiance(grid(4, 4), &mut Stages::default()).unwrap();
+            let (tables, _) = order.harmonics(&irradiance, &mut Stages::default()).unwrap();
+            for table in tables {
+                let error = table.error;
+                println!("{} in {}: {:?}", table.name, table.precision, error.measured_max);
+                assert_eq!(error.texels_checked, 9);
+                // And the rounding to storage.
+                assert!(error.measured_max.unwrap() <= error.estimate.unwrap() + 6e-8, "{error:?}");
+            }
+        }
+    }
+}
+
 /// LD (F0·A + F90·B) is exact where nothing varies, and where the lobe is the one that LD was filtered with, n = v = r.
 #[test]
 fn the_split_sum_is_exact_where_it_should_be() {

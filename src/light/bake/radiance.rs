@@ -1,6 +1,6 @@
 //! Exitant radiance over roughness, normals and directions, and what the split sum makes of it.
 
-use super::{Order, RADIANCE, Values, estimate, frames, lobes_of, timed};
+use super::{MARGIN, Order, RADIANCE, Values, estimate, frames, lobes_of, timed};
 use crate::axis::{Axis, Variable};
 use crate::bake::Stages;
 use crate::check::reference_of;
@@ -36,7 +36,7 @@ impl Order<'_> {
             some => some.iter().copied().map(Some).collect(),
         };
         let Order { evaluator, light, observer, .. } = *self;
-        let tolerance = 0.25 * self.tolerance;
+        let tolerance = MARGIN * self.tolerance;
         let (mut exact, mut split, mut lobes) = (Vec::new(), Vec::new(), Vec::new());
         let [mut seconds, mut split_seconds] = [0.0; 2];
         for &setting in &settings {

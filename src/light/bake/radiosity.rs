@@ -1,7 +1,7 @@
 //! Radiosity over normals, and what share of the irradiance it is.
 
 use super::radiance::weighed;
-use super::{IRRADIANCE, Order, Truths, Values, estimate, frames, lobes_of, timed};
+use super::{IRRADIANCE, MARGIN, Order, Truths, Values, estimate, frames, lobes_of, timed};
 use crate::axis::Axis;
 use crate::bake::Stages;
 use crate::check::{Check, reference_albedo};
@@ -30,7 +30,7 @@ impl Order<'_> {
         let irradiance = unchecked.irradiance(axes.clone(), stages)?;
         self.observer.begin(&format!("{material} radiosity"));
         let frames = frames(&axes[0], &axes[1]);
-        let tolerance = 0.25 * self.tolerance;
+        let tolerance = MARGIN * self.tolerance;
         let mut seconds = 0.0;
         let found = timed(&mut seconds, || {
             let lit = (scene, material);

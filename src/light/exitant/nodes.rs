@@ -44,6 +44,13 @@ impl Local {
         if height(t, p) < -cell.size() { Side::Below } else { Side::Crossed }
     }
 
+    /// The corner that is the farthest above the surface, or the least below.
+    fn highest_corner(&self, cell: &Cell) -> (f64, f64) {
+        let corners = [0, 1, 2, 3].map(|k| (cell.theta[k / 2], cell.psi[k % 2]));
+        let height = |&(theta, psi): &(f64, f64)| dot(direction(theta, psi), self.normal);
+        corners.into_iter().max_by(|a, b| height(a).total_cmp(&height(b))).unwrap_or(corners[0])
+    }
+
     /// What of a cell's meridian is above the surface, from θ to θ: n·ω = A cos θ + B sin θ > 0 within a quarter turn of its
     /// peak, which for θ ∈ [0, π] is one stretch. The first is the larger where nothing is.
     fn above(&self, cell: &Cell, psi: f64) -> [f64; 2] {
@@ -75,6 +82,9 @@ pub(super) struct Nodes {
     pub angles: Vec<Angles>,
     pub weights: Vec<[f64; 3]>,
     pub cosines: Vec<f64>,
+    /// L Δω, the mean of the channels, of a cell where a corner is above the surface and one of the meridians is not: what
+    /// lies between them is not seen. The last node is then that corner, which counts nothing.
+    pub unseen: f64,
     /// What a coarser rule, of the outer nodes alone, weighs each with in place of 1.
     pub outer: Vec<f64>,
     pub side: Side,
@@ -96,6 +106,7 @@ pub(super) fn nodes(domain: &Domain, local: &Local, cell: &Cell) -> Nodes {
         angles: Vec::new(),
         weights: Vec::new(),
         cosines: Vec::new(),
+        unseen: 0.0,
         outer: Vec::new(),
         side,
         hides: false,
@@ -120,9 +131,11 @@ pub(super) fn nodes(domain: &Domain, local: &Local, cell: &Cell) -> Nodes {
         }
     };
     if cell.is_flat() && side == Side::Crossed {
+        let mut is_seen = true;
         for (x, wx, outer_x) in THREE {
             let psi = p + half[1] * x;
             let [low, high] = local.above(cell, psi);
+            is_seen &= low < high;
             for (y, wy, outer_y) in THREE {
                 let theta = 0.5 * (low + high) + 0.5 * (high - low) * y;
                 let weight = wx * wy * 2.0 * half[1] * (high - low) * theta.sin();
@@ -131,6 +144,12 @@ pub(super) fn nodes(domain: &Domain, local: &Local, cell: &Cell) -> Nodes {
                     take(theta, psi, light.map(|l| l * weight), outer_x * outer_y);
                 }
             }
+        }
+        if !is_seen {
+            let (theta, psi) = local.highest_corner(cell);
+            take(theta, psi, [0.0; 3], 1.0);
+            let solid = 2.0 * t.sin() * half[0].sin() * 2.0 * half[1];
+            nodes.unseen = solid * domain.radiance(cell, t.cos()).iter().sum::<f64>() / 3.0;
         }
         return nodes;
     }

@@ -58,7 +58,7 @@ impl Albedo {
     fn new(evaluator: &Evaluator, scene: &Scene, material: &str) -> Result<Self> {
         let axis =
             Axis::new(Variable::ThetaI, Self::SAMPLES, [0.0, FRAC_PI_2], Positions::Nodes, Mapping::Linear)?;
-        let plan = TablePlan::material(material, &RHO_DH, scene, material, vec![axis])?.with_tolerance(1e-5);
+        let plan = TablePlan::material(material, &RHO_DH, scene, material, vec![axis])?.with_tolerance(1e-6);
         let table = evaluator.bake(&plan, Check::Sample(0), &mut Stages::default(), &Unobserved)?;
         let values = (0..table.texels()).map(|k| std::array::from_fn(|c| table.value(k, c))).collect();
         Ok(Self { values })

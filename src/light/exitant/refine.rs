@@ -186,6 +186,10 @@ fn leaf(view: usize, cell: Cell, nodes: &Nodes, values: &[[f32; 3]]) -> Leaf {
         (sum, coarse) = (sum + sent, coarse + outer * sent);
         light += weight.iter().map(|w| w.abs()).sum::<f64>() / 3.0;
     }
+    // Of a corner that is above between meridians that are not; none is there if it is below as well.
+    let corner = values.last().zip(nodes.cosines.last()).filter(|_| nodes.unseen > 0.0);
+    let corner = corner.map_or(0.0, |(f, cos)| cos * f.iter().map(|&f| f64::from(f)).sum::<f64>() / 3.0);
+    let unseen = nodes.unseen * corner;
     let most = light * high;
     let spread = if high > 0.0 { ((high - low) / high).clamp(0.0, 1.0) } else { 0.0 };
     let error = match (cell.is_flat(), nodes.side == Side::Crossed) {
@@ -193,13 +197,13 @@ fn leaf(view: usize, cell: Cell, nodes: &Nodes, values: &[[f32; 3]]) -> Leaf {
         // Down to texels, which are cut.
         (false, true) => f64::INFINITY,
         (false, false) => VARIED * spread * spread * most,
-        (true, true) => CUT * (sum - coarse).abs(),
+        (true, true) => CUT * (sum - coarse).abs() + UNSEEN * unseen,
         (true, false) => SMOOTH * spread.powi(4) * most,
     };
     let varied = !cell.is_flat();
     // What no light comes from needs no parts; of a block whose nodes are all below, that is not known.
-    let unseen = !cell.is_flat() && nodes.side == Side::Crossed;
-    let error = if light > 0.0 || unseen { error } else { 0.0 };
+    let unknown = !cell.is_flat() && nodes.side == Side::Crossed;
+    let error = if light > 0.0 || unseen > 0.0 || unknown { error } else { 0.0 };
     Leaf { view, cell, value, error, varied }
 }
 
@@ -207,3 +211,6 @@ fn leaf(view: usize, cell: Cell, nodes: &Nodes, values: &[[f32; 3]]) -> Leaf {
 /// within c rad, as μ/(μ + c) does and lobes that are seen at grazing angles do, it was 0.35 at most: GGX under a white
 /// map of 256 × 128, tilted by 60° and seen at 90°, 86° and 69°, against its ρ_dh.
 const CUT: f64 = 0.4;
+/// Of L Δω f cos θi at a corner that alone is above, what the cell sends: a third of the corner's height is the mean over
+/// its triangle, which is less than half of the cell, and in the mean less than that.
+const UNSEEN: f64 = 0.1;
