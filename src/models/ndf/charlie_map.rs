@@ -170,7 +170,8 @@ mod tests {
     /// The truth takes more nodes; the reference agrees with it.
     #[test]
     fn the_counts_hold_for_every_masking() {
-        let models: [(&str, fn(f64, SlopeCounts, f64) -> Vec<Sample>); 7] = [
+        type Samples = fn(f64, SlopeCounts, f64) -> Vec<Sample>;
+        let models: [(&str, Samples); 7] = [
             ("charlie", samples::<SmithCorrelated>),
             ("charlie-smith-separable-schlick", samples::<SmithSeparable>),
             ("charlie-schlick-ggx-direct-schlick", samples::<SchlickGgxDirect>),
