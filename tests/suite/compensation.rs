@@ -139,7 +139,10 @@ fn coats_and_sheen_agree_with_the_reference() {
         vec![Factor::BelowSheen { of: sheen, most: 0.6 }, Factor::BelowCoat { weight: 0.5 }],
     ];
     for factors in factors {
-        for name in [WHITE, "lambert", "oren-nayar", "mirror-none"] {
+        // Below a sheen Phong's lobe is off by 9e-6: what is below has kinks that his directions cross.
+        let is_sheen = factors.iter().any(|factor| factor.albedo().is_some());
+        let about_axes: &[&str] = if is_sheen { &[] } else { &["phong", "lafortune"] };
+        for name in [&[WHITE, "lambert", "oren-nayar", "mirror-none"], about_axes].concat() {
             let Ok(model) = gonio::models::find(name) else { continue };
             let names: Vec<_> = factors.iter().map(Factor::name).collect();
             // Charlie's E is the slowest: the finest tolerance tells most.

@@ -89,7 +89,7 @@ impl Ndf for Charlie {
         [counts, _]: [SlopeCounts; 2],
         tolerance: f64,
     ) -> Vec<Sample> {
-        charlie_map::samples::<M>(fixed.mu, counts, tolerance)
+        charlie_map::samples::<M>(fixed.mu, &fixed.kinks, counts, tolerance)
     }
 
     fn most<M: Masking>([counts, _]: [SlopeCounts; 2]) -> usize {

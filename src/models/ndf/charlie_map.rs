@@ -2,7 +2,7 @@
 //! analytic at
 //! - the horizon, where L has μ^c, and 0° where it has (1 − μ)^c; 60°, where Λ's two branches meet;
 //! - the mirror direction, where sin^(1/α) θm comes to a point, the sharpest, a cone, at α = 1;
-//! - the kinks of the masking, if it has any.
+//! - the kinks of the masking, if it has any, and of factors.
 //!
 //! So panels in the elevation ψ = π/2 − θe end at all of these, each by the double exponential rule (Takahasi & Mori
 //! 1974), which no algebraic singularity at an end slows down; and for each ψ the azimuth is δφ = d sinh u with d the
@@ -19,16 +19,22 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_6, PI};
 const SEAM: f64 = FRAC_PI_6;
 
 /// Directions and what they weigh: cos θ dω of them.
-pub(super) fn samples<M: Masking>(mu: f64, counts: SlopeCounts, tolerance: f64) -> Vec<Sample> {
+pub(super) fn samples<M: Masking>(
+    mu: f64,
+    of_factors: &[f64],
+    counts: SlopeCounts,
+    tolerance: f64,
+) -> Vec<Sample> {
     // What has kinks says so of directions too.
     const { assert!(M::KINKS.most == 0 || M::KINKS.of_directions.is_some()) };
     let kinks = M::KINKS.of_directions;
     let sin = ((1.0 - mu) * (1.0 + mu)).sqrt();
     let own = mu.atan2(sin);
-    let (rule, turns) = (ends(counts.nodes, tolerance), gauss_legendre(azimuths::<M>(counts)));
+    let (rule, turns) = (ends(nodes::<M>(counts), tolerance), gauss_legendre(azimuths::<M>(counts)));
     let mut breaks = vec![0.0, SEAM, own, FRAC_PI_2];
     let of_masking = kinks.into_iter().flat_map(|kinks| (kinks.elevations)(own));
-    breaks.extend(of_masking.filter(|&psi| 0.0 < psi && psi < FRAC_PI_2));
+    let of_factors = of_factors.iter().map(|cosine| cosine.asin());
+    breaks.extend(of_masking.chain(of_factors).filter(|&psi| 0.0 < psi && psi < FRAC_PI_2));
     breaks.sort_by(f64::total_cmp);
     let least = tolerance.max(1e-9).cbrt();
     let mut samples = Vec::new();
@@ -84,7 +90,12 @@ pub(super) fn samples<M: Masking>(mu: f64, counts: SlopeCounts, tolerance: f64) 
 /// At most so many.
 pub(super) fn most<M: Masking>(counts: SlopeCounts) -> usize {
     let panels = if M::KINKS.of_directions.is_some() { (3 + 4) * 2 } else { 3 };
-    panels * counts.nodes * azimuths::<M>(counts)
+    panels * nodes::<M>(counts) * azimuths::<M>(counts)
+}
+
+/// Where kinks make more panels, each takes an eighth less: measured as the counts are.
+fn nodes<M: Masking>(counts: SlopeCounts) -> usize {
+    counts.nodes - if M::KINKS.of_directions.is_some() { counts.nodes / 8 } else { 0 }
 }
 
 /// What maskings of the normal divide by, |h|², takes half as many again: measured as the counts are.
@@ -170,7 +181,7 @@ mod tests {
     /// The truth takes more nodes; the reference agrees with it.
     #[test]
     fn the_counts_hold_for_every_masking() {
-        type Samples = fn(f64, SlopeCounts, f64) -> Vec<Sample>;
+        type Samples = fn(f64, &[f64], SlopeCounts, f64) -> Vec<Sample>;
         let models: [(&str, Samples); 7] = [
             ("charlie", samples::<SmithCorrelated>),
             ("charlie-smith-separable-schlick", samples::<SmithSeparable>),
@@ -195,7 +206,7 @@ mod tests {
                 };
                 let s = alpha.into();
                 let most = SlopeCounts { azimuths: 70, nodes: 80 };
-                let exact = sum(model, plenty(mu, most, 1e-10), &s);
+                let exact = sum(model, plenty(mu, &[], most, 1e-10), &s);
                 if k < 6 {
                     let truth = model.reference.unwrap().rho_dh(mu, &s);
                     let error = (exact[0] - truth[0]).abs().max((exact[1] - truth[1]).abs());
@@ -231,7 +242,7 @@ mod tests {
             let mean = |nodes: Vec<Node>, finer: f64| {
                 let [counts, _] = counts(finer);
                 let at = |n: &Node| {
-                    let rho = sum(model, samples::<VCavity>(n.x, counts, finer), &s);
+                    let rho = sum(model, samples::<VCavity>(n.x, &[], counts, finer), &s);
                     rho.map(|rho| rho * n.weight)
                 };
                 nodes.par_iter().map(at).reduce(|| [0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]])
