@@ -3,13 +3,13 @@
 //!
 //! Drivers keep compiled shaders on disk; Mesa's cache is off with `MESA_SHADER_CACHE_DISABLE=true`.
 
-use gonio::gpu::{Device, DeviceChoice, Kernel, compose};
+use gonio::gpu::{Device, DeviceChoice, Kernel, compose, validate};
 use gonio::models::{self, Model};
 use gonio::plan::Precision;
 use gonio::{Error, Result, wgpu};
 use std::time::Instant;
 
-const ROUNDS: usize = 5;
+const ROUNDS: usize = 3;
 
 fn main() -> Result<()> {
     let mut args = std::env::args().skip(1);
@@ -28,6 +28,8 @@ fn main() -> Result<()> {
     println!("{:26} {:>9} {:>10}", "kernel of values", "bytes", "compile");
     let mut medians = Vec::new();
     for (what, text) in &texts {
+        // What is not valid compiles in no time.
+        validate(text, Precision::F32)?;
         let mut times: Vec<_> =
             (0..ROUNDS).map(|round| compile(device, queue, text, round)).collect::<Result<_>>()?;
         times.sort_by(f64::total_cmp);
@@ -46,6 +48,9 @@ fn source(model: &Model) -> String {
     compose(Kernel::Points, Some(model), 3, Precision::F32)
 }
 
+/// What parts share that knows no model: once is enough.
+const ELEMENTARY: &str = "with elementary";
+
 /// The kernel with every model's parts under names of their own, and `lobe` a switch.
 fn all_in_one(library: &[&Model]) -> String {
     let mut module = String::new();
@@ -54,11 +59,15 @@ fn all_in_one(library: &[&Model]) -> String {
         let text = source(model);
         let (shared, own): (Vec<&str>, Vec<&str>) = text.split("\n// ---- ").partition(|section| {
             let name = section.lines().next().unwrap_or_default();
-            !model.parts.iter().any(|part| part.name == name)
+            name == ELEMENTARY
+                || !(name.starts_with("with ") || model.parts.iter().any(|part| part.name == name))
         });
         let own = own.iter().map(|section| format!("\n// ---- {section}")).collect::<String>();
+        let elementary = shared.iter().find(|section| section.starts_with(ELEMENTARY));
         if k == 0 {
             module = shared.join("\n// ---- ");
+        } else if let Some(section) = elementary.filter(|_| !module.contains(ELEMENTARY)) {
+            module += &format!("\n// ---- {section}");
         }
         module += &renamed(&own, k);
         lobes += &format!("        case {k}u: {{ return lobe_{k}(p, a, alpha, row); }}\n");
