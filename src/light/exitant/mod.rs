@@ -1,8 +1,8 @@
 //! Exitant radiance Le(ωe) = ∫ f L cos θi dωi, its pre-filtered approximation, and radiosity.
 //!
 //! The directions are the host's (`domain`, `nodes`), f the device's, and where more of them are needed is found from what
-//! it says (`refine`). Lambert's lobe needs none of this: f is constant, so Le = f E, which is exact. A mirror's is what it is defined to be:
-//! Le(ωe) = F L(r), r the mirror direction of ωe.
+//! it says (`refine`). Lambert's lobe needs none of this: f is constant, so Le = f E, which is exact. A mirror's is what it
+//! is defined to be: Le(ωe) = F L(r), r the mirror direction of ωe.
 
 mod domain;
 mod nodes;

@@ -33,22 +33,24 @@ impl Local {
 
     /// What of a cell is above the surface.
     fn side(&self, cell: &Cell) -> Side {
-        let (t, p) = cell.middle();
-        let height = |theta, psi| dot(direction(theta, psi), self.normal);
-        let corners: [f64; 4] = std::array::from_fn(|k| height(cell.theta[k / 2], cell.psi[k % 2]));
-        let [low, _] = range(&corners);
+        let [low, _] = range(&corners(cell).map(|at| self.height(at)));
         if low >= 0.0 {
             return Side::Above;
         }
         // Corners may all be below where the middle of a side is not.
-        if height(t, p) < -cell.size() { Side::Below } else { Side::Crossed }
+        if self.height(cell.middle()) < -cell.size() { Side::Below } else { Side::Crossed }
     }
 
     /// The corner that is the farthest above the surface, or the least below.
     fn highest_corner(&self, cell: &Cell) -> (f64, f64) {
-        let corners = [0, 1, 2, 3].map(|k| (cell.theta[k / 2], cell.psi[k % 2]));
-        let height = |&(theta, psi): &(f64, f64)| dot(direction(theta, psi), self.normal);
-        corners.into_iter().max_by(|a, b| height(a).total_cmp(&height(b))).unwrap_or(corners[0])
+        let higher = |a, b| if self.height(b) >= self.height(a) { b } else { a };
+        let [first, rest @ ..] = corners(cell);
+        rest.into_iter().fold(first, higher)
+    }
+
+    /// n·ω at (θ, ψ).
+    fn height(&self, (theta, psi): (f64, f64)) -> f64 {
+        dot(direction(theta, psi), self.normal)
     }
 
     /// What of a cell's meridian is above the surface, from θ to θ: n·ω = A cos θ + B sin θ > 0 within a quarter turn of its
@@ -68,6 +70,11 @@ impl Local {
         let away = (0..3).map(|k| (middle[k] - self.mirror[k]).powi(2)).sum::<f64>().sqrt();
         size > 0.5 * self.width && away < size
     }
+}
+
+/// (θ, ψ) of a cell's corners.
+fn corners(cell: &Cell) -> [(f64, f64); 4] {
+    std::array::from_fn(|k| (cell.theta[k / 2], cell.psi[k % 2]))
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,6 +124,8 @@ pub(super) fn nodes(domain: &Domain, local: &Local, cell: &Cell) -> Nodes {
     nodes.hides = local.hides_the_peak(cell);
     let (t, p) = cell.middle();
     let half = cell.half();
+    // (cos θ₀ − cos θ₁) Δψ
+    let solid = 2.0 * t.sin() * half[0].sin() * 2.0 * half[1];
     let frame = &local.view.frame;
     let mut take = |theta: f64, psi: f64, weight: [f64; 3], outer: f64| {
         let incident = frame.to_local(domain.to_world(direction(theta, psi)));
@@ -148,7 +157,6 @@ pub(super) fn nodes(domain: &Domain, local: &Local, cell: &Cell) -> Nodes {
         if !is_seen {
             let (theta, psi) = local.highest_corner(cell);
             take(theta, psi, [0.0; 3], 1.0);
-            let solid = 2.0 * t.sin() * half[0].sin() * 2.0 * half[1];
             nodes.unseen = solid * domain.radiance(cell, t.cos()).iter().sum::<f64>() / 3.0;
         }
         return nodes;
@@ -156,8 +164,7 @@ pub(super) fn nodes(domain: &Domain, local: &Local, cell: &Cell) -> Nodes {
     let at = |k: usize| [NODE, -NODE][usize::from(k == 0)];
     let place = |k: usize| (t + at(k / 2) * half[0], p + at(k % 2) * half[1]);
     if cell.is_flat() {
-        // (cos θ₀ − cos θ₁) Δψ, shared out as sin θ is.
-        let solid = 2.0 * t.sin() * half[0].sin() * 2.0 * half[1];
+        // Shared out as sin θ is.
         let sines = [0, 2].map(|k| place(k).0.sin());
         for k in 0..4 {
             let (theta, psi) = place(k);
