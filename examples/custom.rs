@@ -5,18 +5,23 @@
 //! It takes what every model here takes: a shader, its twin in f64, where it lives, and a reference. From then on
 //! recipes, plans, tables and checks know it by its name.
 
-use gonio::axis::{Axis, Variable};
-use gonio::bake::{Evaluator, Stages, Unobserved};
+use gonio::backend::gpu::DeviceChoice;
+use gonio::bake::{Evaluator, Unobserved};
+use gonio::base::precision::VALUE_F32;
+use gonio::base::quadrature::gauss_legendre;
+use gonio::base::timings::Timings;
 use gonio::check::Check;
-use gonio::gpu::DeviceChoice;
-use gonio::mapped::{Fixed, Map, Sample};
-use gonio::models::{self, Component, Integral, Model, Part};
-use gonio::plan::{Lobe, TablePlan, VALUE_F32};
-use gonio::promises::{self, Options, Sum};
-use gonio::quadrature::gauss_legendre;
-use gonio::quantity::RHO_DH;
+use gonio::model;
+use gonio::model::directions::{Fixed, Map, Sample};
+use gonio::model::lobe::Lobe;
+use gonio::model::parameters::Setting;
+use gonio::model::{Component, Integral, Model, Part};
+use gonio::plan::TablePlan;
 use gonio::reference::{Angles, MIN_MU, Reference};
-use gonio::setting::Setting;
+use gonio::table::axis::{Axis, Variable};
+use gonio::table::quantity::RHO_DH;
+use gonio::verify;
+use gonio::verify::{Options, Sum};
 use std::f64::consts::PI;
 
 static MODEL: Model = Model {
@@ -69,19 +74,19 @@ impl Reference for LommelSeeliger {
 }
 
 fn main() -> gonio::Result<()> {
-    models::register(&MODEL)?;
+    gonio::shader::register(&MODEL)?;
     let (evaluator, line) = Evaluator::choose(&DeviceChoice::Auto)?;
     println!("{line}");
 
     let axes = vec![Axis::natural(Variable::ThetaI, 64)?];
-    let plan = TablePlan::basis("moon", &RHO_DH, models::find("lommel-seeliger")?, None, axes)?;
+    let plan = TablePlan::basis("moon", &RHO_DH, model::find("lommel-seeliger")?, None, axes)?;
     let table =
-        evaluator.bake(&plan.with_tolerance(1e-6), Check::All, &mut Stages::default(), &Unobserved)?;
+        evaluator.bake(&plan.with_tolerance(1e-6), Check::All, &mut Timings::default(), &Unobserved)?;
     println!("ρ_dh of 64 θi: {:.1e} off at most", table.error.measured_max.unwrap_or(f64::NAN));
 
     let mut subject = Sum::model(&evaluator, Lobe::new(&MODEL, None, vec![[1.0, 0.0]; 3]), vec![])?;
     let report =
-        promises::check(&mut subject, &Options { budget: 1_000_000, ..Options::default() }, &Unobserved)?;
+        verify::check(&mut subject, &Options { budget: 1_000_000, ..Options::default() }, &Unobserved)?;
     for finding in &report.findings {
         println!("{:14} {:?}: {}", finding.property, finding.verdict, finding.said);
     }

@@ -9,10 +9,11 @@
 //! the table. The first row is white, so its right halves cannot be told from the background, and the
 //! program fails if they can.
 
-use gonio::axis::{Axis, Mapping, Positions, Variable};
-use gonio::gpu::{Baker, INSTALL, TextureFormat};
+use gonio::backend::gpu::{Baker, INSTALL, TextureFormat};
 use gonio::plan::TablePlan;
-use gonio::{models, quantity, wgpu};
+use gonio::table::axis::{Axis, Mapping, Positions, Variable};
+use gonio::table::quantity;
+use gonio::{model, wgpu};
 use image::{Rgba, RgbaImage};
 use std::error::Error;
 
@@ -56,10 +57,10 @@ async fn open() -> Result<(wgpu::Device, wgpu::Queue), Box<dyn Error>> {
 
 /// The table: A and B over μ (the texture's width) and roughness (its height). Both axes have samples at
 /// both ends ("nodes"), and those of μ crowd towards grazing, where A and B bend most.
-fn dfg() -> gonio::error::Result<TablePlan> {
+fn dfg() -> gonio::base::error::Result<TablePlan> {
     let roughness = Axis::new(Variable::Roughness, 64, [0.0, 1.0], Positions::Nodes, Mapping::Linear)?;
     let mu = Axis::new(Variable::Mu, 64, [0.0, 1.0], Positions::Nodes, Mapping::Sqrt)?;
-    TablePlan::basis("dfg", &quantity::SPLIT_SUM, models::find("ggx")?, None, vec![roughness, mu])
+    TablePlan::basis("dfg", &quantity::SPLIT_SUM, model::find("ggx")?, None, vec![roughness, mu])
 }
 
 /// Records the engine's pass: one triangle over everything, the spheres in the fragment shader.

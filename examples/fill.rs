@@ -1,10 +1,12 @@
 //! How fast values are written: a GGX RGB table of 64 × 256 × 512 beside a plain fill of the same bytes in
 //! the same layout, warm, in one run. `cargo run --release --example fill [-- DEVICE]`
 
-use gonio::axis::{Axis, Variable};
-use gonio::gpu::{Baker, Device, DeviceChoice, Prepared};
-use gonio::plan::{Lobe, TablePlan};
-use gonio::{models, quantity, wgpu};
+use gonio::backend::gpu::{Baker, Device, DeviceChoice, Prepared};
+use gonio::model::lobe::Lobe;
+use gonio::plan::TablePlan;
+use gonio::table::axis::{Axis, Variable};
+use gonio::table::quantity;
+use gonio::{model, wgpu};
 use std::time::Instant;
 
 const SHAPE: [usize; 3] = [64, 256, 512];
@@ -92,7 +94,7 @@ fn table() -> gonio::Result<TablePlan> {
     let variables = [Variable::ThetaI, Variable::ThetaE, Variable::DeltaPhi];
     let axes =
         variables.into_iter().zip(SHAPE).map(|(v, n)| Axis::natural(v, n)).collect::<gonio::Result<_>>()?;
-    let ggx = models::find("ggx")?;
+    let ggx = model::find("ggx")?;
     let basis = TablePlan::basis("values", &quantity::BRDF, ggx, Some(0.5), axes)?;
     let weights = [1.0, 0.78, 0.34].map(|f0| [f0, 1.0]).to_vec();
     Ok(TablePlan {

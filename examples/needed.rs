@@ -3,9 +3,11 @@
 //!
 //! Drivers keep compiled shaders on disk; Mesa's cache is off with `MESA_SHADER_CACHE_DISABLE=true`.
 
-use gonio::gpu::{Device, DeviceChoice, Kernel, compose, validate};
-use gonio::models::{self, Model};
-use gonio::plan::Precision;
+use gonio::backend::gpu::{Device, DeviceChoice};
+use gonio::base::precision::Precision;
+use gonio::model;
+use gonio::model::Model;
+use gonio::shader::{Kernel, compose, validate};
 use gonio::{Error, Result, wgpu};
 use std::time::Instant;
 
@@ -13,14 +15,14 @@ const ROUNDS: usize = 3;
 
 fn main() -> Result<()> {
     let mut args = std::env::args().skip(1);
-    let model = models::find(&args.next().unwrap_or("ggx".into()))?;
+    let model = model::find(&args.next().unwrap_or("ggx".into()))?;
     let choice = args.next().unwrap_or("auto".into()).parse().unwrap_or(DeviceChoice::Auto);
     let (device, line) = Device::choose(&choice)?;
     println!("{line}");
     let Some(opened) = device else { return Ok(()) };
     let (device, queue) = opened.wgpu();
 
-    let library: Vec<_> = models::all().filter(|model| !model.is_delta()).collect();
+    let library: Vec<_> = model::all().filter(|model| !model.is_delta()).collect();
     let texts = [
         (format!("{} alone", model.name), source(model)),
         (format!("all {} models in one", library.len()), all_in_one(&library)),

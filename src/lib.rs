@@ -61,7 +61,7 @@
 //!
 //! fn dfg(device: &wgpu::Device, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder) -> gonio::Result<wgpu::Texture> {
 //!     let axes = vec![Axis::natural(Variable::Roughness, 64)?, Axis::natural(Variable::Mu, 64)?];
-//!     let table = TablePlan::basis("dfg", &quantity::SPLIT_SUM, models::find("ggx")?, None, axes)?;
+//!     let table = TablePlan::basis("dfg", &quantity::SPLIT_SUM, model::find("ggx")?, None, axes)?;
 //!     Baker::new(device, queue).record_texture(encoder, &table, TextureFormat::Rg16Float)
 //! }
 //! ```
@@ -71,45 +71,29 @@
 //! `scene` reads glTF and recipes, `files` writes tables, `cli` is the command and has both; it is the
 //! default. An embedder takes none of them: `default-features = false`.
 
-pub mod atlas;
-pub mod axis;
+pub mod backend;
 pub mod bake;
+pub mod base;
+#[cfg(feature = "files")]
+pub mod batch;
 pub mod check;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod cli;
-mod cpu;
-pub mod error;
-pub mod factor;
-#[cfg(feature = "files")]
-pub mod files;
-pub mod gpu;
-mod interpolation;
-pub mod light;
-pub mod mapped;
-pub mod models;
-mod optimise;
-pub mod pair;
-pub mod plan;
-pub mod points;
 #[cfg(feature = "cli")]
-mod portrait;
-pub mod promises;
-pub mod quadrature;
-pub mod quantity;
-pub mod radiometry;
+mod figure;
+mod integrate;
+#[cfg(feature = "files")]
+pub mod io;
+pub mod lab;
+pub mod light;
+pub mod model;
+pub mod plan;
 pub mod reference;
-mod sampling;
 pub mod scene;
-pub mod setting;
-mod slopes;
-mod spread;
-pub mod storage;
+pub mod shader;
 pub mod table;
-pub mod trade;
-mod work;
+pub mod verify;
 
-pub use error::{Error, Result};
-pub use interpolation::InterpolationError;
-pub use optimise::{Choice, Layout};
+pub use base::error::{Error, Result};
 pub use wgpu;

@@ -1,25 +1,21 @@
 //! Bakes tables: evaluate, look, cross-check.
 
-#[cfg(feature = "files")]
-mod set;
-#[cfg(feature = "files")]
-mod stream;
+pub mod points;
 
-#[cfg(feature = "files")]
-pub use set::{Baked, Options, bake_set};
-#[cfg(feature = "files")]
-pub use stream::{Progress, Streaming};
-
+use crate::backend::cpu;
+use crate::backend::gpu::{Device, DeviceChoice};
+use crate::base::error::{Error, Result};
+use crate::base::precision::{Precision, STORED_F32, VALUE_F32};
+use crate::base::timings::Timings;
+use crate::base::tolerance::FINEST;
+use crate::check::bilinear;
 use crate::check::{Check, cross_check};
-use crate::cpu;
-use crate::error::{Error, Result};
-use crate::factor::Factor;
-use crate::gpu::{Device, DeviceChoice};
-use crate::interpolation;
-use crate::models::FINEST;
-use crate::plan::{Lobe, Precision, Rule, STORED_F32, TablePlan, VALUE_F32};
-use crate::quantity::Evaluation;
-use crate::storage::{Storage, Stored};
+use crate::model::compensation::Factor;
+use crate::model::lobe::Lobe;
+use crate::plan::TablePlan;
+use crate::table::quantity::Evaluation;
+use crate::table::rule::Rule;
+use crate::table::storage::{Storage, Stored};
 use crate::table::{Table, TableError, Values};
 use serde::Serialize;
 use std::time::Instant;
@@ -51,31 +47,6 @@ pub struct Unobserved;
 
 impl Observer for Unobserved {}
 
-/// Where the time went, in seconds.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Stages {
-    /// Reading the scene and its textures, and planning.
-    pub scene: f64,
-    /// Finding and opening the device.
-    pub device: f64,
-    /// Composing and validating shaders.
-    pub compose: f64,
-    /// Making factors and nodes, compiling pipelines, uploading.
-    pub compile: f64,
-    /// Running the kernels, or the CPU path. Software drivers compile a kernel when it first runs, unless they find it
-    /// in a cache: that is most of a cold start.
-    pub dispatch: f64,
-    /// Running them again by a finer rule, to certify the first.
-    pub certify: f64,
-    /// Copying results back.
-    pub readback: f64,
-    /// Comparing with the reference: in a set of tables while the device computes the next one, so that all stages
-    /// together may be longer than the bake.
-    pub check: f64,
-    /// Writing files.
-    pub write: f64,
-}
-
 impl Evaluator {
     /// The evaluator that a choice means, with a line that says which and why.
     ///
@@ -97,7 +68,7 @@ impl Evaluator {
         &self,
         plan: &TablePlan,
         check: Check,
-        stages: &mut Stages,
+        stages: &mut Timings,
         observer: &dyn Observer,
     ) -> Result<Table> {
         let computed = self.compute(plan, check, stages, observer)?;
@@ -109,11 +80,11 @@ impl Evaluator {
     }
 
     /// Evaluates a table, and certifies integrals that are to be checked at all.
-    fn compute(
+    pub(crate) fn compute(
         &self,
         plan: &TablePlan,
         check: Check,
-        stages: &mut Stages,
+        stages: &mut Timings,
         observer: &dyn Observer,
     ) -> Result<Computed> {
         plan.check_fits_memory()?;
@@ -139,14 +110,14 @@ impl Evaluator {
     }
 
     /// Where the table of a plan comes from.
-    fn origin(&self, plan: &TablePlan, seconds: f64) -> Origin {
+    pub(crate) fn origin(&self, plan: &TablePlan, seconds: f64) -> Origin {
         let path = self.path(plan);
         Origin { rule: path.rule(plan, self), precision: path.name(), seconds }
     }
 
     /// How a plan is carried out here: f64 where its tolerance asks for it, and the CPU where the device
     /// has none. Values in f64 are the CPU's: no table of theirs is stored beyond f32 by a device.
-    fn path(&self, plan: &TablePlan) -> Path<'_> {
+    pub(crate) fn path(&self, plan: &TablePlan) -> Path<'_> {
         match (self, plan.precision()) {
             (Self::Device(device), Precision::F32) => Path::Device(device, Precision::F32),
             (Self::Device(device), Precision::F64)
@@ -160,7 +131,7 @@ impl Evaluator {
 }
 
 /// A table's values, which nobody has looked at yet: that takes no device.
-struct Computed {
+pub(crate) struct Computed {
     values: Values,
     /// The error that is promised, or found between two rules.
     estimate: Option<f64>,
@@ -168,7 +139,7 @@ struct Computed {
 }
 
 /// Where a table comes from.
-struct Origin {
+pub(crate) struct Origin {
     rule: String,
     precision: &'static str,
     seconds: f64,
@@ -176,7 +147,7 @@ struct Origin {
 
 impl Computed {
     /// The table as it is stored, with its error.
-    fn check(
+    pub(crate) fn check(
         self,
         plan: &TablePlan,
         check: Check,
@@ -190,7 +161,7 @@ impl Computed {
         let rounding = plan.stored().coarse_rounding(plan.quantity.error);
         let mut error = cross_check(plan, &values, check, estimate.map(|e| e + rounding), tick)?;
         error.underflows = (plan.storage == Storage::F16).then_some(underflows);
-        error.interpolation = interpolation::measure(plan, &values, check)?;
+        error.interpolation = bilinear::measure(plan, &values, check)?;
         let table = origin.table(plan, values, error);
         table.check_sane()?;
         check_energy(plan, &table)?;
@@ -200,7 +171,7 @@ impl Computed {
 
 impl Origin {
     /// The table of a plan, with what was found.
-    fn table(self, plan: &TablePlan, values: Values, error: TableError) -> Table {
+    pub(crate) fn table(self, plan: &TablePlan, values: Values, error: TableError) -> Table {
         Table {
             name: plan.name.clone(),
             quantity: plan.quantity.name.into(),
@@ -222,7 +193,7 @@ impl Origin {
 
 /// An evaluator and the precision of its result.
 #[derive(Clone, Copy)]
-enum Path<'a> {
+pub(crate) enum Path<'a> {
     Device(&'a Device, Precision),
     /// Always f64; the precision is what was asked for.
     Cpu(Precision),
@@ -232,7 +203,7 @@ impl Path<'_> {
     fn evaluate(
         self,
         plan: &TablePlan,
-        stages: &mut Stages,
+        stages: &mut Timings,
         tick: &(impl Fn(f64) -> Result<()> + Sync),
     ) -> Result<Values> {
         match self {
@@ -253,11 +224,11 @@ impl Path<'_> {
         self,
         plan: &TablePlan,
         values: &mut Values,
-        stages: &mut Stages,
+        stages: &mut Timings,
         tick: &(impl Fn(f64) -> Result<()> + Sync),
     ) -> Result<f64> {
         const TRIES: i32 = 3;
-        let mut spent = Stages::default();
+        let mut spent = Timings::default();
         let mut left = 0.0;
         for finer in 1..=TRIES {
             let second = plan.clone().with_tolerance(plan.tolerance * 0.1f64.powi(finer));
@@ -276,7 +247,7 @@ impl Path<'_> {
 
     /// What is promised before anything is measured: the budget of values, the tolerance of the warped
     /// rule. The other rules promise nothing.
-    fn estimate(self, plan: &TablePlan) -> Option<f64> {
+    pub(crate) fn estimate(self, plan: &TablePlan) -> Option<f64> {
         if plan.quantity.evaluation != Evaluation::Value {
             return (plan.rule == Rule::Warped).then_some(plan.tolerance);
         }

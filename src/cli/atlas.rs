@@ -1,12 +1,14 @@
 //! `gonio atlas`
 
-use super::watch::Watch;
-use super::{HEADING, device_json, print_beside, print_json};
-use crate::atlas::{self, Band, DEFAULT_BUDGET, Kind, Page};
+use crate::backend::gpu::DeviceChoice;
 use crate::bake::{Evaluator, Observer};
-use crate::error::{Error, Result};
-use crate::gpu::DeviceChoice;
-use crate::models::{self, MODELS, Model};
+use crate::base::error::{Error, Result};
+use crate::cli::watch::Watch;
+use crate::cli::{HEADING, device_json, print_beside, print_json};
+use crate::lab::atlas;
+use crate::lab::atlas::{Band, DEFAULT_BUDGET, Kind, Page};
+use crate::model;
+use crate::model::{MODELS, Model};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -91,7 +93,7 @@ fn models(args: &Args) -> Result<Vec<&'static Model>> {
             .filter(|model| !model.is_delta() && model.reference.is_some())
             .collect());
     }
-    args.model.iter().map(|name| models::find(name).map_err(|error| error.at("--model"))).collect()
+    args.model.iter().map(|name| model::find(name).map_err(|error| error.at("--model"))).collect()
 }
 
 /// A table of a page.

@@ -1,14 +1,16 @@
 //! `gonio bake`
 
-use super::watch::Watch;
-use super::{HEADING, print, print_json, tell, warn};
-use crate::bake::{Baked, Evaluator, Options, Stages, Streaming, bake_set};
+use crate::backend::gpu::DeviceChoice;
+use crate::bake::Evaluator;
+use crate::base::error::{Error, Result};
+use crate::base::timings::Timings;
+use crate::batch::{Baked, Options, Streaming, bake_set};
 use crate::check::Check;
-use crate::error::{Error, Result};
-use crate::files::Format;
-use crate::gpu::DeviceChoice;
-use crate::plan::{Plan, Selection};
+use crate::cli::watch::Watch;
+use crate::cli::{HEADING, print, print_json, tell, warn};
+use crate::io::Format;
 use crate::scene;
+use crate::scene::planner::{Plan, Selection};
 use serde_json::json;
 use std::mem::ManuallyDrop;
 use std::path::PathBuf;
@@ -89,7 +91,7 @@ pub fn run(args: &Args) -> Result<()> {
         tolerance: args.tolerance,
     };
     let plan = Plan::new(&scene, &selection)?;
-    let mut stages = Stages { scene: start.elapsed().as_secs_f64(), ..Stages::default() };
+    let mut stages = Timings { scene: start.elapsed().as_secs_f64(), ..Timings::default() };
     let say = Say { json: args.json };
 
     if args.dry_run {

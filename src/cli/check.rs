@@ -3,13 +3,15 @@
 mod pictures;
 mod targets;
 
-use super::watch::Watch;
-use super::{HEADING, device_json, junit, print_beside, print_json, warn};
+use crate::backend::gpu::{Device, DeviceChoice, INSTALL};
 use crate::bake::Evaluator;
-use crate::error::{Error, Result};
-use crate::gpu::{Device, DeviceChoice, INSTALL, UserFunction, UserShader, directions};
-use crate::promises::{self, Finding, Input, Options, Parameter, Report, STEPS, Symmetry, Verdict};
+use crate::base::error::{Error, Result};
+use crate::cli::watch::Watch;
+use crate::cli::{HEADING, device_json, junit, print_beside, print_json, warn};
 use crate::scene;
+use crate::verify;
+use crate::verify::user_shader::{UserFunction, UserShader, directions};
+use crate::verify::{Finding, Input, Options, Parameter, Report, STEPS, Symmetry, Verdict};
 use anstyle::{AnsiColor, Style};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -120,7 +122,7 @@ fn own(args: &Args, targets: Vec<Target>, evaluator: &Evaluator, line: &str) -> 
     let mut all = Vec::new();
     for (k, Target { mut subject, command }) in targets.into_iter().enumerate() {
         let start = Instant::now();
-        let report = promises::check(&mut subject, &args.options(), &watch)?;
+        let report = verify::check(&mut subject, &args.options(), &watch)?;
         let seconds = start.elapsed().as_secs_f64();
         let has_values = |finding: &Finding| !finding.values.is_empty();
         let eval = |f: &Finding| Some(format!("{command} {}", f.input.as_ref().filter(|_| has_values(f))?));
@@ -186,7 +188,7 @@ fn shader(args: &Args, path: &Path, entry: &str) -> Result<()> {
 
     let start = Instant::now();
     let watch = Watch::new(STEPS);
-    let report = promises::check(&mut subject, &args.options(), &watch);
+    let report = verify::check(&mut subject, &args.options(), &watch);
     watch.finish();
     let report = report?;
     let seconds = start.elapsed().as_secs_f64();

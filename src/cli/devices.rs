@@ -1,8 +1,9 @@
 //! `gonio devices`
 
-use super::{HEADING, print, print_json};
-use crate::error::Result;
-use crate::gpu::{self, ASKED_TURNS, Adapter, Canary};
+use crate::backend::gpu;
+use crate::backend::gpu::{ASKED_TURNS, Adapter, Canary};
+use crate::base::error::Result;
+use crate::cli::{HEADING, print, print_json};
 use serde_json::{Value, json};
 
 #[derive(clap::Args)]

@@ -3,14 +3,14 @@
 mod many;
 mod one;
 
-use super::subject;
-use crate::axis::{Axis, Variable};
-use crate::error::{Error, Result};
-use crate::gpu::DeviceChoice;
+use crate::backend::gpu::DeviceChoice;
+use crate::base::angles::Angles;
+use crate::base::error::{Error, Result};
+use crate::cli::subject;
 use crate::plan::TablePlan;
-use crate::points::Angles;
-use crate::quantity::BRDF;
 use crate::scene;
+use crate::table::axis::{Axis, Variable};
+use crate::table::quantity::BRDF;
 use std::f64::consts::PI;
 use std::path::PathBuf;
 

@@ -1,14 +1,16 @@
 //! `gonio gallery`: a page with a picture of every model.
 
-use super::plot::View;
-use super::watch::Watch;
-use super::{HEADING, device_json, models as details, print_beside, print_json};
+use crate::backend::gpu::DeviceChoice;
 use crate::bake::{Evaluator, Observer};
-use crate::error::Result;
-use crate::factor::Compensation;
-use crate::files::{MOST_SETTINGS, Radius, TableSet, escape};
-use crate::gpu::DeviceChoice;
-use crate::models::{FRESNELS, MASKINGS, MODELS, Model, Term};
+use crate::base::error::Result;
+use crate::cli::plot::View;
+use crate::cli::watch::Watch;
+use crate::cli::{HEADING, device_json, models as details, print_beside, print_json};
+use crate::figure::picture::{MOST_SETTINGS, Radius};
+use crate::io::TableSet;
+use crate::io::draw::svg::escape;
+use crate::model::compensation::Compensation;
+use crate::model::{FRESNELS, MASKINGS, MODELS, Model, Term};
 use serde_json::{Map, Value, json};
 use std::f64::consts::FRAC_PI_4;
 use std::path::PathBuf;
@@ -153,7 +155,7 @@ fn compensation(model: &Model) -> Result<Entry> {
     })
 }
 
-/// Stages all files; the manifest lists them.
+/// Writes all files; the manifest lists them.
 fn write(
     set: &mut TableSet,
     entries: &[Entry],

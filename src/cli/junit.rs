@@ -2,9 +2,9 @@
 //!
 //! There is no standard; this is what Jenkins, GitLab and GitHub's actions read alike.
 
-use super::check::Checked;
-use crate::error::{Error, Result};
-use crate::promises::{Finding, Verdict};
+use crate::base::error::{Error, Result};
+use crate::cli::check::Checked;
+use crate::verify::{Finding, Verdict};
 use quick_xml::Writer;
 use quick_xml::events::BytesText;
 use std::io;

@@ -3,19 +3,23 @@
 mod picture;
 mod sky;
 
-use super::subject::{self, key_value};
-use super::watch::Watch;
-use super::{HEADING, device_json, print_beside, print_json, warn};
-use crate::axis::{Axis, Mapping, Positions, Variable};
-use crate::bake::{Evaluator, Observer, Stages};
+use crate::backend::gpu::DeviceChoice;
+use crate::bake::{Evaluator, Observer};
+use crate::base::error::{Error, Result};
+use crate::base::timings::Timings;
 use crate::check::Check;
-use crate::error::{Error, Result};
-use crate::files::{self, Format, Provenance, TableEntry, TableSet, sha256};
-use crate::gpu::DeviceChoice;
+use crate::cli::subject;
+use crate::cli::subject::key_value;
+use crate::cli::watch::Watch;
+use crate::cli::{HEADING, device_json, print_beside, print_json, warn};
+use crate::io::{Format, Provenance, TableEntry, TableSet, sha256};
+use crate::light;
 use crate::light::bake::Order;
-use crate::light::{self, Clamped, Light};
-use crate::scene::{self, Material, Scene};
+use crate::light::{Clamped, Light};
+use crate::scene;
+use crate::scene::{Material, Scene};
 use crate::table::Table;
+use crate::table::axis::{Axis, Mapping, Positions, Variable};
 use serde_json::{Map, Value, json};
 use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
@@ -220,7 +224,7 @@ fn lit(args: &Args) -> Result<Option<Subject>> {
     if path.extension().is_none() && !path.exists() {
         let mut sets = sets;
         // A model needs a roughness, which --roughness may be all that is given of.
-        let model = crate::models::find(name)?;
+        let model = crate::model::find(name)?;
         let first = args.roughness.first().map(f64::to_string).unwrap_or_default();
         if let (Some(shape), Some(_)) = (model.shape, args.roughness.first())
             && !sets.iter().any(|(key, _)| *key == shape.name || *key == "roughness")
@@ -281,7 +285,7 @@ fn make(
     });
     let order =
         Order { evaluator, light, name: &source.name, tolerance: args.tolerance, check: sampled, observer };
-    let mut stages = Stages::default();
+    let mut stages = Timings::default();
     let spread = args.normals.or(args.normal.is_none().then_some(NORMALS));
     let mut truncation = Value::Null;
     let tables = match (args.quantity, lit) {
@@ -360,5 +364,3 @@ fn difference(exact: &Table, split: &Table) -> Table {
         ..split.clone()
     }
 }
-
-pub(super) use files::draw_light;

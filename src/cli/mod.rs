@@ -15,7 +15,7 @@ mod trade;
 mod watch;
 
 use crate::bake::Evaluator;
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
 use anstyle::{AnsiColor, Style};
 use clap::{Parser, Subcommand};
 use serde_json::{Value, json};

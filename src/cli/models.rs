@@ -2,11 +2,12 @@
 
 mod costs;
 
-use super::{HEADING, print, print_json};
-use crate::error::Result;
-use crate::factor::Compensation;
-use crate::gpu::DeviceChoice;
-use crate::models::{self, Component, FRESNELS, Integral, MASKINGS, MODELS, Metal, Model, Shape, Term};
+use crate::backend::gpu::DeviceChoice;
+use crate::base::error::Result;
+use crate::cli::{HEADING, print, print_json};
+use crate::model;
+use crate::model::compensation::Compensation;
+use crate::model::{Component, FRESNELS, Integral, MASKINGS, MODELS, Metal, Model, Shape, Term};
 use serde_json::{Value, json};
 
 #[derive(clap::Args)]
@@ -21,7 +22,7 @@ pub struct Args {
     costs: bool,
     /// With --costs: the tolerances
     #[arg(long, value_name = "T", num_args = 1.., requires = "costs", default_values_t = [1e-2, 1e-4, 1e-6],
-          value_parser = super::bake::tolerance)]
+          value_parser = crate::cli::bake::tolerance)]
     tolerance: Vec<f64>,
     /// With --costs: auto, the best GPU, else software Vulkan, else the CPU path; cpu; or a part of an adapter's name
     #[arg(long, value_name = "NAME", requires = "costs", default_value = "auto")]
@@ -63,7 +64,7 @@ pub fn run(args: &Args) -> Result<()> {
     match &args.name {
         Some(name) => one(model_or_term(name)?, args.json),
         None if args.json => print_json(&json!({
-            "models": models::all().map(|m| json!({ "name": m.name, "summary": m.summary })).collect::<Vec<_>>(),
+            "models": model::all().map(|m| json!({ "name": m.name, "summary": m.summary })).collect::<Vec<_>>(),
             "masking": terms(&MASKINGS), "fresnel": terms(&FRESNELS),
         })),
         None => list(),
@@ -73,8 +74,8 @@ pub fn run(args: &Args) -> Result<()> {
 /// The model of this name, or the mirror with a Fresnel term of this name: it has the term's parameters and no more.
 fn model_or_term(name: &str) -> Result<&'static Model> {
     match FRESNELS.iter().any(|term| term.name == name) {
-        true => models::find("mirror")?.with_terms(None, Some(name)),
-        false => models::find(name),
+        true => model::find("mirror")?.with_terms(None, Some(name)),
+        false => model::find(name),
     }
 }
 

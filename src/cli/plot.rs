@@ -1,15 +1,17 @@
 //! `gonio plot`
 
-use super::check::quoted;
-use super::subject::{self, key_value};
-use super::watch::Watch;
-use super::{HEADING, device_json, models as details, print_beside, print_json};
+use crate::backend::gpu::DeviceChoice;
 use crate::bake::{Evaluator, Observer};
-use crate::error::{Error, Result};
-use crate::files::{MOST_SETTINGS, MOST_THETAS, Picture, Plate, Radius, draw_portraits, write_files};
-use crate::gpu::DeviceChoice;
-use crate::models;
-use crate::portrait::{Portrait, Sitter};
+use crate::base::error::{Error, Result};
+use crate::cli::check::quoted;
+use crate::cli::subject;
+use crate::cli::subject::key_value;
+use crate::cli::watch::Watch;
+use crate::cli::{HEADING, device_json, models as details, print_beside, print_json};
+use crate::figure::picture::{MOST_SETTINGS, MOST_THETAS, Picture, Plate, Radius, draw};
+use crate::figure::{Portrait, Sitter};
+use crate::io::write_files;
+use crate::model;
 use crate::scene;
 use serde_json::{Value, json};
 use std::f64::consts::FRAC_PI_2;
@@ -167,7 +169,7 @@ type Given<'a> = (&'a str, Vec<&'a str>);
 impl View {
     /// A model with `--set`; without any, at three settings.
     pub fn of_model(name: &str, sets: &[String]) -> Result<Self> {
-        let model = models::find(name).map_err(|error| match error {
+        let model = model::find(name).map_err(|error| match error {
             Error::Input(why) if name.contains(['.', '/']) => {
                 Error::input(format!("{why}; of a scene, give --material NAME too"))
             }
@@ -253,7 +255,7 @@ impl View {
         let footer = footer(&portraits, evaluator);
         let (title, subtitle) = (&self.title, &self.subtitle);
         let plate = Plate { title, subtitle, footer: &footer, thetas, portraits: &portraits, radius };
-        let picture = draw_portraits(&plate)?;
+        let picture = draw(&plate)?;
         Ok(Shown { view: self, thetas, portraits, picture })
     }
 }

@@ -1,8 +1,9 @@
 //! What a command is about, in a recipe's own words: a model with `--set`, or a material of a scene.
 
-use crate::error::{Error, Result};
-use crate::models;
-use crate::scene::{self, Scene};
+use crate::base::error::{Error, Result};
+use crate::model;
+use crate::scene;
+use crate::scene::Scene;
 
 /// `KEY=VALUE`, without the blanks around either.
 pub fn key_value(set: &str) -> Result<(&str, &str)> {
@@ -14,7 +15,7 @@ pub fn key_value(set: &str) -> Result<(&str, &str)> {
 /// A scene of one material with one lobe: the model with these parameters. The recipe's own reader says what
 /// is wrong with a name or a value. The material is called by the name that tells the model's terms.
 pub fn model<'a>(name: &str, sets: impl IntoIterator<Item = (&'a str, &'a str)>) -> Result<Scene> {
-    let name = models::find(name)?.name;
+    let name = model::find(name)?.name;
     let mut lobe = format!("model = \"{name}\"");
     for (key, value) in sets {
         lobe += &format!(", {key} = {}", toml(value));

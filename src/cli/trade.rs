@@ -1,16 +1,18 @@
 //! `gonio trade`
 
-use super::watch::Watch;
-use super::{HEADING, device_json, print_beside, print_json, warn};
-use crate::axis::{Axis, Variable};
+use crate::backend::gpu::DeviceChoice;
 use crate::bake::Evaluator;
-use crate::error::{Error, Result};
-use crate::gpu::DeviceChoice;
-use crate::models;
-use crate::plan::{Plan, Selection, TablePlan};
-use crate::quantity::{self, Evaluation};
+use crate::base::error::{Error, Result};
+use crate::cli::watch::Watch;
+use crate::cli::{HEADING, device_json, print_beside, print_json, warn};
+use crate::lab::trade::{Options, Point, Trade, measure, write};
+use crate::model;
+use crate::plan::TablePlan;
 use crate::scene;
-use crate::trade::{Options, Point, Trade, measure, write};
+use crate::scene::planner::{Plan, Selection};
+use crate::table::axis::{Axis, Variable};
+use crate::table::quantity;
+use crate::table::quantity::Evaluation;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -95,7 +97,7 @@ pub fn run(args: &Args) -> Result<()> {
 fn table(args: &Args) -> Result<TablePlan> {
     let Some(path) = &args.recipe else {
         let quantity = quantity::find(args.quantity.as_deref().unwrap_or("split_sum"))?;
-        let model = models::find(args.model.as_deref().unwrap_or("ggx"))?;
+        let model = model::find(args.model.as_deref().unwrap_or("ggx"))?;
         let rough = model.shape.map(|_| Variable::Roughness);
         let variables = rough.into_iter().chain(quantity.variables.iter().copied());
         let axes = variables.map(|v| Axis::natural(v, args.size)).collect::<Result<_>>()?;

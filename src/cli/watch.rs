@@ -1,7 +1,7 @@
 //! Progress for people, and Ctrl-C.
 
 use crate::bake::Observer;
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -1,7 +1,7 @@
 //! Environment maps: piecewise-constant radiance over cells of latitude and longitude.
 
-use crate::error::{Error, Result};
-use crate::radiometry::Cell;
+use crate::base::error::{Error, Result};
+use crate::base::radiometry::Cell;
 use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 
@@ -142,7 +142,7 @@ impl Environment {
 
     /// L from a direction of the world, unit: that of the texel whose cell it is in.
     pub fn radiance(&self, direction: [f64; 3]) -> [f64; 3] {
-        let (theta, psi) = super::angles(self.turn(direction));
+        let (theta, psi) = crate::light::angles(self.turn(direction));
         let row = (theta / PI * self.height as f64) as usize;
         let column = (psi.rem_euclid(TAU) / TAU * self.width as f64) as usize;
         self.texel(row.min(self.height - 1), column.min(self.width - 1)).map(f64::from)

@@ -17,9 +17,9 @@
 //!
 //! for any light, as it is a sum of such.
 
-use super::{Environment, Light, Sky};
 use crate::bake::Evaluator;
-use crate::error::Result;
+use crate::base::error::Result;
+use crate::light::{Environment, Light, Sky};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -137,7 +137,7 @@ impl<'a> Factors<'a> {
             let along = 0.5 * (t1.sin().powi(2) - t0.sin().powi(2));
             // ∫ of sin θ times: cos² θ, sin θ, sin θ cos θ, sin² θ.
             let cos2 = -cubes(f64::cos);
-            let across = crate::radiometry::sin2([t0, t1]);
+            let across = crate::base::radiometry::sin2([t0, t1]);
             let mixed = cubes(f64::sin);
             let sin2 = solid - cos2;
             [

@@ -1,7 +1,7 @@
 //! Irradiance E(n) = ∫ L(ω) max(0, n·ω) dω.
 //!
 //! Of a map, L is constant over a cell, so a cell that is above the surface sends L n·∫ω dω, and that integral is in
-//! closed form ([`Cell::vector`](crate::radiometry::Cell::vector)). In a row these are, but for two factors of the row's, L ∫(cos ψ, sin ψ, 1) dψ, whose
+//! closed form ([`Cell::vector`](crate::base::radiometry::Cell::vector)). In a row these are, but for two factors of the row's, L ∫(cos ψ, sin ψ, 1) dψ, whose
 //! sums over columns are made once: a row costs a normal two look-ups, and beside those only columns where the horizon
 //! crosses the row. There n·ω = A cos θ + B(ψ) sin θ is above 0 down each meridian from the row's border to θh, sin(θh − θm) =
 //! n·ω(θm)/√(A² + B²). What lies between is integrated by Gauss–Legendre, two nodes in θ and two in ψ, on pieces between the
@@ -13,10 +13,10 @@
 //!
 //! This is the twin of `shaders/light/irradiance.wgsl`, in f64, and all that the shader is given.
 
-use super::{Environment, Light, dot};
 use crate::bake::Evaluator;
-use crate::error::Result;
-use crate::radiometry::{chord, sin2};
+use crate::base::error::Result;
+use crate::base::radiometry::{chord, sin2};
+use crate::light::{Environment, Light, dot};
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};

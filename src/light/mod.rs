@@ -16,6 +16,7 @@
 //! | radiosity | M = ∫ Le cos θe dωe = ∫ ρ_dh(ωi) L cos θi dωi | [`exitant`] |
 
 pub mod bake;
+mod device;
 mod environment;
 pub mod exitant;
 pub mod harmonics;
@@ -29,7 +30,7 @@ pub use environment::{Clamped, Environment, MAX_TEXELS};
 pub use read::read;
 pub use sky::{Disk, Sky};
 
-use crate::error::Result;
+use crate::base::error::Result;
 
 /// Light that comes from everywhere else, far away: the same at every point of a surface.
 #[derive(Debug, Clone, PartialEq)]

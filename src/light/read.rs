@@ -1,7 +1,7 @@
 //! Reading environment maps: OpenEXR and Radiance HDR.
 
-use super::environment::{Clamped, Environment, check_size};
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
+use crate::light::environment::{Clamped, Environment, check_size};
 use exr::meta::MetaData;
 use exr::prelude::{ReadChannels, ReadLayers, read as exr_read};
 use image::ImageDecoder;

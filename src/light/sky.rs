@@ -1,7 +1,7 @@
 //! Lights in closed form: a disk, a gradient.
 
-use super::{angles, dot};
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
+use crate::light::{angles, dot};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A disk in the sky, or a sphere: radiance L within an angle σ of its middle.

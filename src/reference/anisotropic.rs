@@ -1,12 +1,12 @@
 //! Microfacet models whose slopes differ along the tangent and the bitangent.
 
-use super::directions::{MIN_MU, Pair, sin_of};
-use super::fresnel::Fresnel;
-use super::masking::{Facet, Masking};
-use super::ndf::Ndf;
-use super::quadrature::{even_breaks, integrate};
-use super::{Angles, Factors, Reference, definition};
-use crate::setting::Setting;
+use crate::model::parameters::Setting;
+use crate::reference::directions::{MIN_MU, Pair, sin_of};
+use crate::reference::fresnel::Fresnel;
+use crate::reference::masking::{Facet, Masking};
+use crate::reference::ndf::Ndf;
+use crate::reference::quadrature::{even_breaks, integrate};
+use crate::reference::{Angles, Factors, Reference, definition};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -92,7 +92,7 @@ impl Anisotropic {
         self.ndf.d(cos2, tan2, &with(setting, alpha)) * alpha * alpha / (axes[0] * axes[1])
     }
 
-    /// As [`Microfacet`](super::Microfacet)'s, once around.
+    /// As [`Microfacet`](crate::reference::Microfacet)'s, once around.
     fn rho_dh_within(&self, tolerance: f64, mu: f64, phi: f64, setting: &Setting) -> [f64; 2] {
         let mu = mu.clamp(MIN_MU, 1.0);
         let axes = axes(setting);

@@ -1,6 +1,7 @@
 //! Hemispherical integrals as they are defined.
 
-use super::{Angles, MIN_MU, quadrature::integrate};
+use crate::reference::quadrature::integrate;
+use crate::reference::{Angles, MIN_MU};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Asked of each integral of a nest. The inner one is noise to the outer one, so it has to be finer.

@@ -1,9 +1,9 @@
 //! The factors of a lobe, from the albedos that the reference integrates: nothing of the evaluators' tables.
 
-use super::{MIN_MU, Reference, definition};
-use crate::factor::{Albedo, Factor};
-use crate::plan::Lobe;
-use crate::setting::Setting;
+use crate::model::compensation::{Albedo, Factor};
+use crate::model::lobe::Lobe;
+use crate::model::parameters::Setting;
+use crate::reference::{MIN_MU, Reference, definition};
 use std::collections::HashMap;
 use std::f64::consts::PI;
 use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
@@ -148,12 +148,12 @@ impl Curve {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::models;
+    use crate::model;
 
     /// What is between the points of an octave is as good as the reference's integrals.
     #[test]
     fn octaves_hold_to_1e_10() {
-        let model = models::find("ggx-smith-correlated-none").unwrap();
+        let model = model::find("ggx-smith-correlated-none").unwrap();
         for alpha in [1e-4, 0.01, 0.3, 1.0] {
             let of = Albedo { model, roughness: None, parameters: model.defaults() };
             let curve = Curve::of(&of, &Setting { alpha, parameters: model.defaults() }).unwrap();

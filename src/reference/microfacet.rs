@@ -1,12 +1,15 @@
 //! Microfacet models: any distribution with any masking, under any Fresnel term.
 
-use super::directions::{MIN_MU, Pair, sin_of};
-use super::fresnel::{Fresnel, schlick::Schlick};
-use super::masking::{Facet, Masking, smith_correlated::SmithCorrelated};
-use super::ndf::{Ndf, ggx::Ggx};
-use super::quadrature::{even_breaks, integrate};
-use super::{Angles, Factors, Reference, definition};
-use crate::setting::Setting;
+use crate::model::parameters::Setting;
+use crate::reference::directions::{MIN_MU, Pair, sin_of};
+use crate::reference::fresnel::Fresnel;
+use crate::reference::fresnel::schlick::Schlick;
+use crate::reference::masking::smith_correlated::SmithCorrelated;
+use crate::reference::masking::{Facet, Masking};
+use crate::reference::ndf::Ndf;
+use crate::reference::ndf::ggx::Ggx;
+use crate::reference::quadrature::{even_breaks, integrate};
+use crate::reference::{Angles, Factors, Reference, definition};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 

@@ -1,8 +1,9 @@
 //! The ideal mirror: the limit of every microfacet model as α → 0.
 
-use super::fresnel::{Fresnel, schlick::Schlick};
-use super::{Angles, Reference};
-use crate::setting::Setting;
+use crate::model::parameters::Setting;
+use crate::reference::fresnel::Fresnel;
+use crate::reference::fresnel::schlick::Schlick;
+use crate::reference::{Angles, Reference};
 
 /// f = F δ(θi − θe) δ(δφ) / (cos θi sin θi) with Schlick's F: A = 1 − Fc and B = Fc under the delta.
 pub static MIRROR: &dyn Reference = &Mirror { fresnel: &Schlick };

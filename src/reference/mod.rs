@@ -24,7 +24,7 @@ mod quadrature;
 #[cfg(test)]
 mod tests;
 
-use crate::setting::Setting;
+use crate::model::parameters::Setting;
 
 pub(crate) use anisotropic::Anisotropic;
 pub use classic::{

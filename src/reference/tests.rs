@@ -1,8 +1,8 @@
 //! What the reference promises of itself. The quadrature's own tests are beside it.
 
-use super::definition;
-use super::quadrature::integrate;
-use super::{
+use crate::reference::definition;
+use crate::reference::quadrature::integrate;
+use crate::reference::{
     Angles, Constant, GGX, GLTF_DIFFUSE, Ggx, LAMBERT, MIN_MU, MIRROR, Masking, Microfacet, Reference,
     Schlick, SmithCorrelated, SmithSeparable, Unmasked,
 };

@@ -14,8 +14,8 @@ mod layers;
 mod source;
 mod texels;
 
-use super::{LeftOut, Scene};
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
+use crate::scene::{LeftOut, Scene};
 use ::gltf::json::{self, Root};
 use file::GltfFile;
 use source::Source;

@@ -1,8 +1,9 @@
 //! glTF 2.0's metallic-roughness, Appendix B.3.5, and its extensions: what the way they add lobes up breaks.
 
-use super::{Formula, Material, MaterialLobe, Weights};
-use crate::factor::Factor;
-use crate::models::{self, Violation};
+use crate::model;
+use crate::model::Violation;
+use crate::model::compensation::Factor;
+use crate::scene::{Formula, Material, MaterialLobe, Weights};
 
 /// K(0) = ∫ Kd cos θ dω, the most of ∫ (1 − Fc)/π cos θ dω, rounded up.
 const DIFFUSE: f64 = 0.971_846;
@@ -45,12 +46,12 @@ pub(super) fn energy(material: &Material) -> Violation {
 /// reach.
 pub(super) fn of_models(material: &Material) -> Option<Violation> {
     let violation = |lobe: &MaterialLobe| {
-        let violation = models::find(&lobe.model).ok()?.violation()?;
+        let violation = model::find(&lobe.model).ok()?.violation()?;
         (violation.bound.is_finite() && most(lobe) > 0.0).then_some(violation)
     };
     let source = material.lobes.iter().find_map(violation)?.source;
     let base = material.lobes.iter().filter(|lobe| !is_sheen(material, lobe));
-    let bound = |lobe: &MaterialLobe| models::find(&lobe.model).map_or(1.0, |model| model.rho_bound);
+    let bound = |lobe: &MaterialLobe| model::find(&lobe.model).map_or(1.0, |model| model.rho_bound);
     // Of a lobe that Fresnel splits, F90 is the most that it shows.
     let shown = |lobe: &MaterialLobe| match &lobe.weights {
         Weights::Constant(weights) => weights.as_flattened().iter().copied().fold(0.0, f64::max),
@@ -65,7 +66,7 @@ pub(super) fn of_models(material: &Material) -> Option<Violation> {
 fn under_sheen(material: &Material, base: f64) -> f64 {
     let sheens = material.lobes.iter().filter(|lobe| is_sheen(material, lobe));
     sheens.fold(base, |base, lobe| {
-        let bound = models::find(&lobe.model).map_or(1.0, |model| model.rho_bound);
+        let bound = model::find(&lobe.model).map_or(1.0, |model| model.rho_bound);
         base.max(most(lobe) * bound + (1.0 - most(lobe)) * base)
     })
 }

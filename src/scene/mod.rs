@@ -6,6 +6,7 @@ mod formula;
 #[cfg(feature = "scene")]
 mod gltf;
 mod metallic_roughness;
+pub mod planner;
 #[cfg(feature = "scene")]
 mod recipe;
 mod varying;
@@ -15,12 +16,13 @@ pub use formula::{Formula, Input};
 #[cfg(feature = "scene")]
 pub use recipe::parse as parse_recipe;
 
-use crate::axis::{Axis, Variable};
-use crate::error::{Error, Result};
-use crate::factor::{Compensation, Factor};
-use crate::models::{self, Model};
-use crate::plan::Rule;
-use crate::storage::Storage;
+use crate::base::error::{Error, Result};
+use crate::model;
+use crate::model::Model;
+use crate::model::compensation::{Compensation, Factor};
+use crate::table::axis::{Axis, Variable};
+use crate::table::rule::Rule;
+use crate::table::storage::Storage;
 #[cfg(feature = "scene")]
 use std::path::Path;
 use std::path::PathBuf;
@@ -45,7 +47,7 @@ pub struct Scene {
 impl Material {
     /// Whether a lobe of it tells azimuths from each other.
     pub fn is_anisotropic(&self) -> bool {
-        self.lobes.iter().any(|lobe| models::find(&lobe.model).is_ok_and(Model::is_anisotropic))
+        self.lobes.iter().any(|lobe| model::find(&lobe.model).is_ok_and(Model::is_anisotropic))
     }
 }
 

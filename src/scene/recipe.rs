@@ -3,14 +3,15 @@
 mod disney;
 mod document;
 
-use super::{Distribution, Material, MaterialLobe, Scene, SubjectRequest, TableRequest, Weights};
-use crate::axis::{Axis, MAX_COUNT, Mapping, Positions, Variable};
-use crate::error::{Error, Result};
-use crate::factor::{Albedo, Compensation, Factor};
-use crate::models::{self, ALPHA_MIN_VALUE, Component, Integral, MODELS, Model, Shape};
-use crate::plan::{MAX_GAUSS, MAX_GRID, MAX_SAMPLES, Rule};
-use crate::quantity::{Evaluation, QUANTITIES};
-use crate::storage::Storage;
+use crate::base::error::{Error, Result};
+use crate::model;
+use crate::model::compensation::{Albedo, Compensation, Factor};
+use crate::model::{ALPHA_MIN_VALUE, Component, Integral, MODELS, Model, Shape};
+use crate::scene::{Distribution, Material, MaterialLobe, Scene, SubjectRequest, TableRequest, Weights};
+use crate::table::axis::{Axis, MAX_COUNT, Mapping, Positions, Variable};
+use crate::table::quantity::{Evaluation, QUANTITIES};
+use crate::table::rule::{MAX_GAUSS, MAX_GRID, MAX_SAMPLES, Rule};
+use crate::table::storage::Storage;
 use document::{Document, Fields, Item};
 use std::collections::{BTreeSet, HashSet};
 use std::path::Path;
@@ -80,7 +81,7 @@ fn sheen(item: Item, lobes: &mut Vec<MaterialLobe>) -> Result<()> {
     let fields = item.table(&["color", "roughness"])?;
     let color = channels(fields.require("color")?, [0.0, 1.0])?;
     let roughness = fields.require("roughness")?.number_in([0.0, 1.0])?;
-    let model = models::find("charlie")?.with_terms(None, Some("none"))?;
+    let model = model::find("charlie")?.with_terms(None, Some("none"))?;
     let of = Albedo { model, roughness: Some(roughness), parameters: model.defaults() };
     let most = color.into_iter().fold(0.0, f64::max);
     for lobe in lobes.iter_mut() {
@@ -219,7 +220,7 @@ fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
     let mut keys = vec!["name", "quantity", "material", "model", "masking", "fresnel", "roughness"];
     keys.extend(["axes", "grid", "rule", "storage", "tolerance", COMPENSATION]);
     // A model's own, of which a table of a material or of another model says that it has none.
-    let own = models::all().flat_map(|model| {
+    let own = model::all().flat_map(|model| {
         let shape = model.shape.map(|shape| shape.name);
         shape.into_iter().chain(model.parameters.iter().map(|parameter| parameter.name))
     });
@@ -335,7 +336,7 @@ fn subject(
 
 /// `model = "ggx"`, and where it is made of terms those that stand beside it: `masking`, `fresnel`.
 fn model(fields: &Fields, item: Item) -> Result<&'static Model> {
-    let named = item.text().ok().and_then(|name| models::find(name).ok());
+    let named = item.text().ok().and_then(|name| model::find(name).ok());
     let model = named.map_or_else(|| item.one_of(MODELS.iter().map(|&model| (model.name, model))), Ok)?;
     let terms = model.terms();
     let [masking, fresnel] = ["masking", "fresnel"].map(|key| {

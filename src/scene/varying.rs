@@ -1,9 +1,9 @@
 //! What varies in a material, and the material at one setting of it.
 
-use super::{Distribution, Formula, Material, Weights, metallic_roughness};
-use crate::error::{Error, Result};
-use crate::factor::Factor;
-use crate::models::Violation;
+use crate::base::error::{Error, Result};
+use crate::model::Violation;
+use crate::model::compensation::Factor;
+use crate::scene::{Distribution, Formula, Material, Weights, metallic_roughness};
 
 impl Material {
     /// The parameters that vary, and their ranges: `roughness` (`lobes[0].roughness` where several lobes have

@@ -1,14 +1,17 @@
 //! Promises of models that tell azimuths from each other, and of tables over all four angles.
 
 use crate::common::*;
-use gonio::axis::Variable::{Mu, PhiE, PhiI, ThetaE, ThetaI};
 use gonio::bake::{Evaluator, Unobserved};
+use gonio::base::precision::INTEGRAL_F32;
 use gonio::check::Check;
-use gonio::models::Model;
-use gonio::plan::{INTEGRAL_F32, Lobe, Plan, Selection, TablePlan};
-use gonio::promises::{Options, Parameter, Sum, Verdict, check};
-use gonio::quantity::{BRDF, Quantity, RHO_DH, RHO_HH, SPLIT_SUM};
+use gonio::model::Model;
+use gonio::model::lobe::Lobe;
+use gonio::plan::TablePlan;
 use gonio::scene::parse_recipe;
+use gonio::scene::planner::{Plan, Selection};
+use gonio::table::axis::Variable::{Mu, PhiE, PhiI, ThetaE, ThetaI};
+use gonio::table::quantity::{BRDF, Quantity, RHO_DH, RHO_HH, SPLIT_SUM};
+use gonio::verify::{Options, Parameter, Sum, Verdict, check};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::path::Path;
 
@@ -20,13 +23,13 @@ fn plan(
     model: &'static Model,
     roughness: &[f64],
     [aspect, strength]: [f64; 2],
-    axes: Vec<gonio::axis::Axis>,
+    axes: Vec<gonio::table::axis::Axis>,
 ) -> TablePlan {
     let parameters = [("aspect".into(), aspect), ("strength".into(), strength)];
     basis(quantity, model, roughness, axes).with_parameters(&parameters).unwrap()
 }
 
-fn all_angles() -> Vec<gonio::axis::Axis> {
+fn all_angles() -> Vec<gonio::table::axis::Axis> {
     let thetas = [0.0, 1e-3, 0.3, 0.8, 1.2, 1.5, FRAC_PI_2 - 1e-4, FRAC_PI_2];
     let phis = [0.0, 0.3, 1.2, FRAC_PI_2, 2.5, PI, 4.0, TAU];
     vec![listed(ThetaI, &thetas), listed(PhiI, &phis), listed(ThetaE, &thetas), listed(PhiE, &phis)]

@@ -2,10 +2,11 @@
 //! are exchanged, and the input that is named as the worst gives the error that is named.
 
 use crate::common::*;
-use gonio::atlas::{self, Page, RECIPROCITY};
 use gonio::bake::{Evaluator, Unobserved};
-use gonio::models::MODELS;
-use gonio::plan::VALUE_F32;
+use gonio::base::precision::VALUE_F32;
+use gonio::lab::atlas;
+use gonio::lab::atlas::{Page, RECIPROCITY};
+use gonio::model::MODELS;
 use std::sync::OnceLock;
 
 /// A quarter of the default: enough for the tail to be within a tenth of that of 10⁸ values.

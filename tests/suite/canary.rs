@@ -2,15 +2,18 @@
 //! driver left out of a loop.
 
 use crate::common::*;
-use gonio::axis::Variable;
-use gonio::bake::{Evaluator, Stages, Unobserved};
+use gonio::backend::gpu::{ASKED_TURNS, Baker, Canary, Device};
+use gonio::bake::{Evaluator, Unobserved};
+use gonio::base::angles::Angles;
+use gonio::base::error::Error;
+use gonio::base::timings::Timings;
 use gonio::check::Check;
-use gonio::error::Error;
-use gonio::gpu::{ASKED_TURNS, Baker, Canary, Device, UserFunction, UserShader};
-use gonio::plan::{Rule, TablePlan};
-use gonio::points::Angles;
-use gonio::promises::{Parameter, Subject, Symmetry};
-use gonio::quantity::RHO_DH;
+use gonio::plan::TablePlan;
+use gonio::table::axis::Variable;
+use gonio::table::quantity::RHO_DH;
+use gonio::table::rule::Rule;
+use gonio::verify::user_shader::{UserFunction, UserShader};
+use gonio::verify::{Parameter, Subject, Symmetry};
 
 fn opened() -> &'static Device {
     let Evaluator::Device(device) = device() else { unreachable!("common::device asserts it") };
@@ -111,7 +114,7 @@ fn a_table_is_whole_or_refused() {
             assert_whole(&plan, theta);
             continue;
         }
-        let refused = device().bake(&plan, Check::Sample(0), &mut Stages::default(), &Unobserved);
+        let refused = device().bake(&plan, Check::Sample(0), &mut Timings::default(), &Unobserved);
         let Err(Error::Device(why)) = refused else { panic!("{theta} in θ: {turns} turns, {most} known") };
         for words in ["\"fine\"", &turns.to_string(), &most.to_string(), "coarser"] {
             assert!(why.contains(words), "{words} in {why}");

@@ -2,10 +2,11 @@
 //! that cannot be checked is refused where it is wrong.
 
 use crate::common::device;
+use gonio::backend::gpu::Device;
 use gonio::bake::{Evaluator, Unobserved};
-use gonio::gpu::{Device, UserFunction, UserShader, directions};
-use gonio::points::Angles;
-use gonio::promises::{Declared, Finding, Options, Parameter, Report, Subject, Symmetry, Verdict, check};
+use gonio::base::angles::Angles;
+use gonio::verify::user_shader::{UserFunction, UserShader, directions};
+use gonio::verify::{Declared, Finding, Options, Parameter, Report, Subject, Symmetry, Verdict, check};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 const SYMMETRIC: Symmetry = Symmetry { isotropic: true, bilateral: true };

@@ -3,14 +3,14 @@
 
 use crate::common::{device, model};
 use gonio::bake::Unobserved;
-use gonio::factor::Compensation;
-use gonio::models::MODELS;
-use gonio::plan::Lobe;
-use gonio::points::Angles;
-use gonio::promises::{
+use gonio::base::angles::Angles;
+use gonio::model::MODELS;
+use gonio::model::compensation::Compensation;
+use gonio::model::lobe::Lobe;
+use gonio::scene::{Distribution, Formula, Input, Material, MaterialLobe, Weights};
+use gonio::verify::{
     Declared, Options, Parameter, Report, Subject, Sum, Symmetry, Tolerances, Verdict, check,
 };
-use gonio::scene::{Distribution, Formula, Input, Material, MaterialLobe, Weights};
 
 const OPTIONS: Options = Options { budget: 2_000_000, search: true };
 
@@ -98,7 +98,7 @@ fn every_model_keeps_its_promises_over_its_whole_range() {
 /// Below α = 1e-6 there are integrals alone, down to the mirror.
 #[test]
 fn a_range_that_reaches_the_mirror_is_integrated_to_it() {
-    let model = gonio::models::find("ggx").unwrap();
+    let model = gonio::model::find("ggx").unwrap();
     let lobe = Lobe::new(model, None, vec![[1.0, 1.0]; 3]);
     let range = Parameter::new("roughness", 0.0, 0.5).unwrap();
     let report = report(&mut Sum::model(device(), lobe, vec![range]).unwrap());

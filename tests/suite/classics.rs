@@ -1,12 +1,13 @@
 //! Promises of the classics: their limits, their closed forms, what they are in terms of others, and their integrals.
 
 use crate::common::*;
-use gonio::axis::Variable::{DeltaPhi, Mu, ThetaE, ThetaI};
+use gonio::base::half_angle::MU_MIN;
+use gonio::base::precision::{INTEGRAL_F32, STORED_F32};
 use gonio::check::Check;
-use gonio::models::Model;
-use gonio::pair::MU_MIN;
-use gonio::plan::{INTEGRAL_F32, STORED_F32, TablePlan};
-use gonio::quantity::{BRDF, RHO_DH, RHO_HH, SPLIT_SUM};
+use gonio::model::Model;
+use gonio::plan::TablePlan;
+use gonio::table::axis::Variable::{DeltaPhi, Mu, ThetaE, ThetaI};
+use gonio::table::quantity::{BRDF, RHO_DH, RHO_HH, SPLIT_SUM};
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI};
 
 fn rho(model: &'static Model, alpha: f64, mus: &[f64], tolerance: f64) -> Vec<f64> {

@@ -2,7 +2,7 @@
 //! whatever fails leaves the folder as it was.
 
 use crate::common::readers;
-use gonio::files::{sha256, verify};
+use gonio::io::{sha256, verify};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsStr;

@@ -4,15 +4,20 @@
 
 use crate::common::*;
 
-use gonio::axis::Variable::{DeltaPhi, Mu, Roughness, ThetaE, ThetaI};
 use gonio::bake::Unobserved;
+use gonio::bake::points::Points;
+use gonio::base::angles::Angles;
+use gonio::base::precision::{INTEGRAL_F32, VALUE_F32};
 use gonio::check::Check;
-use gonio::factor::{Albedo, Compensation, Factor};
-use gonio::plan::{INTEGRAL_F32, Lobe, Plan, Rule, Selection, TablePlan, VALUE_F32};
-use gonio::points::{Angles, Points};
-use gonio::promises::{Options, Parameter, Sum, Verdict, check};
-use gonio::quantity::{BRDF, QUANTITIES, Quantity, RHO_DH, RHO_HH, SPLIT_SUM};
+use gonio::model::compensation::{Albedo, Compensation, Factor};
+use gonio::model::lobe::Lobe;
+use gonio::plan::TablePlan;
+use gonio::scene::planner::{Plan, Selection};
 use gonio::scene::{Scene, parse_recipe};
+use gonio::table::axis::Variable::{DeltaPhi, Mu, Roughness, ThetaE, ThetaI};
+use gonio::table::quantity::{BRDF, QUANTITIES, Quantity, RHO_DH, RHO_HH, SPLIT_SUM};
+use gonio::table::rule::Rule;
+use gonio::verify::{Options, Parameter, Sum, Verdict, check};
 use std::path::Path;
 
 const WHITE: &str = "ggx-smith-correlated-none";
@@ -143,7 +148,7 @@ fn coats_and_sheen_agree_with_the_reference() {
         let is_sheen = factors.iter().any(|factor| factor.albedo().is_some());
         let about_axes: &[&str] = if is_sheen { &[] } else { &["phong", "lafortune"] };
         for name in [&[WHITE, "lambert", "oren-nayar", "mirror-none"], about_axes].concat() {
-            let Ok(model) = gonio::models::find(name) else { continue };
+            let Ok(model) = gonio::model::find(name) else { continue };
             let names: Vec<_> = factors.iter().map(Factor::name).collect();
             // Charlie's E is the slowest: the finest tolerance tells most.
             let is_charlie = factors[0].albedo().is_some_and(|of| of.model == charlie);

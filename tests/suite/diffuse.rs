@@ -1,12 +1,15 @@
 //! Promises of the diffuse lobes: their limits, their closed forms, and all digits where two directions graze.
 
 use crate::common::*;
-use gonio::axis::Variable::{DeltaPhi, Mu, ThetaE, ThetaI};
 use gonio::bake::Evaluator;
+use gonio::bake::points::Points;
+use gonio::base::angles::Angles;
+use gonio::base::precision::VALUE_F32;
 use gonio::check::Check;
-use gonio::plan::{Lobe, TablePlan, VALUE_F32};
-use gonio::points::{Angles, Points};
-use gonio::quantity::{BRDF, RHO_HH, SPLIT_SUM};
+use gonio::model::lobe::Lobe;
+use gonio::plan::TablePlan;
+use gonio::table::axis::Variable::{DeltaPhi, Mu, ThetaE, ThetaI};
+use gonio::table::quantity::{BRDF, RHO_HH, SPLIT_SUM};
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI};
 
 /// Of Fujii's form and EON: A = 1/(1 + K1 r), the mean albedo A (1 + K2 r).
@@ -149,11 +152,12 @@ fn keep_their_digits_at_grazing() {
 #[cfg(feature = "scene")]
 #[test]
 fn an_eon_of_three_albedos_is_three_lobes() {
-    use gonio::plan::{Plan, Selection};
+    use gonio::scene::planner::{Plan, Selection};
     let recipe =
         "[materials.clay]\nlobes = [{ model = \"eon\", roughness = 0.8, albedo = [0.9, 0.5, 0.2] }]\n";
     let scene = gonio::scene::parse_recipe("clay.toml".as_ref(), recipe.as_bytes()).unwrap();
-    let table = TablePlan::material("clay", &gonio::quantity::RHO_DH, &scene, "clay", vec![axis(ThetaI, 5)]);
+    let table =
+        TablePlan::material("clay", &gonio::table::quantity::RHO_DH, &scene, "clay", vec![axis(ThetaI, 5)]);
     let table = bake(device(), &table.unwrap(), Check::All);
     assert!(table.error.measured_max.unwrap() <= 1e-4);
     assert_eq!(Plan::new(&scene, &Selection::default()).unwrap().bases.len(), 3);

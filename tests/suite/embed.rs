@@ -2,12 +2,13 @@
 //! what the headless bake reads back, as a buffer and as a texture of every format.
 
 use crate::common::*;
-use gonio::axis::{Axis, Mapping, Positions, Variable};
+use gonio::backend::gpu::{Baker, INSTALL, Recorded, TextureFormat};
 use gonio::bake::Evaluator;
 use gonio::check::Check;
-use gonio::gpu::{Baker, INSTALL, Recorded, TextureFormat};
-use gonio::plan::{Lobe, TablePlan};
-use gonio::quantity::{BRDF, RHO_DH, RHO_HH, SPLIT_SUM};
+use gonio::model::lobe::Lobe;
+use gonio::plan::TablePlan;
+use gonio::table::axis::{Axis, Mapping, Positions, Variable};
+use gonio::table::quantity::{BRDF, RHO_DH, RHO_HH, SPLIT_SUM};
 use gonio::wgpu;
 
 const FORMATS: [(TextureFormat, usize, bool); 4] = [

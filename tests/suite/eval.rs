@@ -3,13 +3,16 @@
 
 use crate::common::readers;
 use crate::common::*;
-use gonio::axis::Variable::{DeltaPhi, ThetaE, ThetaI};
+use gonio::bake::points::Points;
+use gonio::base::angles::{Angles, PHI_MAX};
+use gonio::base::precision::{STORED_F32, VALUE_F32};
 use gonio::check::{Check, VALUE_FLOOR};
-use gonio::models::MODELS;
-use gonio::plan::{Lobe, STORED_F32, TablePlan, VALUE_F32};
-use gonio::points::{Angles, PHI_MAX, Points};
-use gonio::quantity::BRDF;
+use gonio::model::MODELS;
+use gonio::model::lobe::Lobe;
+use gonio::plan::TablePlan;
 use gonio::reference;
+use gonio::table::axis::Variable::{DeltaPhi, ThetaE, ThetaI};
+use gonio::table::quantity::BRDF;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fs;
 use std::path::Path;
@@ -478,7 +481,7 @@ fn models_are_listed_and_described() {
         (output.status.code(), String::from_utf8(output.stdout).unwrap())
     };
     let (_, list) = models(&[]);
-    for model in gonio::models::all() {
+    for model in gonio::model::all() {
         let (code, page) = models(&[model.name]);
         assert!(code == Some(0) && page.contains(model.source), "{page}");
         assert!(model.components.iter().all(|component| page.contains(component.weight)), "{page}");

@@ -3,14 +3,15 @@
 
 use crate::common::*;
 
-use gonio::axis::Variable;
 use gonio::bake::Unobserved;
+use gonio::base::angles::Angles;
 use gonio::check::Check;
-use gonio::plan::{Plan, Selection, TablePlan};
-use gonio::points::Angles;
-use gonio::promises::{Options, Subject, Sum, Verdict, check};
-use gonio::quantity::RHO_DH;
+use gonio::plan::TablePlan;
+use gonio::scene::planner::{Plan, Selection};
 use gonio::scene::{Material, Scene, Weights, parse_recipe, read};
+use gonio::table::axis::Variable;
+use gonio::table::quantity::RHO_DH;
+use gonio::verify::{Options, Subject, Sum, Verdict, check};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 use std::path::Path;

@@ -2,9 +2,9 @@
 //! a set of them is replaced as a whole or not at all.
 
 use crate::common::readers;
-use gonio::axis::{Axis, Mapping, Positions, Variable};
-use gonio::files::{Format, Provenance, TableEntry, TableSet, read_manifest, verify};
-use gonio::storage::Storage;
+use gonio::io::{Format, Provenance, TableEntry, TableSet, read_manifest, verify};
+use gonio::table::axis::{Axis, Mapping, Positions, Variable};
+use gonio::table::storage::Storage;
 use gonio::table::{ErrorKind, Table, TableError, indices};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};

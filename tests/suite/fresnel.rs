@@ -2,13 +2,15 @@
 //! all of η, k and f82, alone under the ideal mirror, whose ρ_dh is F, and under GGX.
 
 use crate::common::*;
-use gonio::axis::Variable::Mu;
 use gonio::bake::Evaluator;
+use gonio::base::precision::{INTEGRAL_F32, Precision, STORED_F32, VALUE_F32};
 use gonio::check::Check;
-use gonio::gpu::{Kernel, compose, validate};
-use gonio::models::{self, METALS, MIRRORS};
-use gonio::plan::{INTEGRAL_F32, Precision, STORED_F32, TablePlan, VALUE_F32};
-use gonio::quantity::{BRDF, RHO_HH, SPLIT_SUM};
+use gonio::model;
+use gonio::model::{METALS, MIRRORS};
+use gonio::plan::TablePlan;
+use gonio::shader::{Kernel, compose, validate};
+use gonio::table::axis::Variable::Mu;
+use gonio::table::quantity::{BRDF, RHO_HH, SPLIT_SUM};
 
 type Set = &'static [(&'static str, f64)];
 
@@ -239,7 +241,7 @@ fn integrals_meet_every_tolerance() {
 /// The mirror with a term holds it and no other.
 #[test]
 fn a_mirror_has_its_term_alone() {
-    assert_eq!(MIRRORS.len(), models::FRESNELS.len());
+    assert_eq!(MIRRORS.len(), model::FRESNELS.len());
     for mirror in MIRRORS.iter() {
         for kernel in [Kernel::Product, Kernel::Analytic] {
             for precision in [Precision::F32, Precision::F64] {

@@ -2,8 +2,8 @@
 //! never with a panic, and never in an endless loop. Files that work are cut short at every length, and changed at
 //! random, reproducibly. `GONIO_MUTATIONS` makes more of them.
 
-use gonio::plan::{Plan, Selection};
 use gonio::scene;
+use gonio::scene::planner::{Plan, Selection};
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -2,13 +2,16 @@
 //! every input, and of the definition with the warped rule.
 
 use crate::common::*;
-use gonio::axis::Axis;
-use gonio::axis::Variable::{self, Mu, ThetaI};
+use gonio::base::precision::INTEGRAL_F32;
 use gonio::check::Check;
-use gonio::models::{Integral, MODELS, Model};
-use gonio::plan::{INTEGRAL_F32, Rule, TablePlan};
-use gonio::quantity::{RHO_DH, RHO_HH, SPLIT_SUM};
+use gonio::model::{Integral, MODELS, Model};
+use gonio::plan::TablePlan;
 use gonio::table::Table;
+use gonio::table::axis::Axis;
+use gonio::table::axis::Variable;
+use gonio::table::axis::Variable::{Mu, ThetaI};
+use gonio::table::quantity::{RHO_DH, RHO_HH, SPLIT_SUM};
+use gonio::table::rule::Rule;
 
 /// The models that have integrals.
 fn bounded() -> impl Iterator<Item = &'static Model> {

@@ -5,21 +5,23 @@
 //! which is inferred from their order there.
 
 use crate::common::{device, evaluators, golden, listed, nodes};
-use gonio::axis::{Axis, Variable};
-use gonio::bake::{Evaluator, Stages, Unobserved};
+use gonio::bake::{Evaluator, Unobserved};
+use gonio::base::precision::Precision;
+use gonio::base::quadrature::gauss_legendre;
+use gonio::base::timings::Timings;
 use gonio::check::Check;
-use gonio::files::{Format, Provenance, verify};
-use gonio::gpu::{Kernel, compose, validate};
+use gonio::io::{Format, Provenance, verify};
 use gonio::light::bake::{Order, lobes_of};
 use gonio::light::exitant::{Integrated, View, prefiltered, radiance, radiosity, split_sum};
 use gonio::light::harmonics::{TRUNCATION, coefficients, convolved, evaluate};
 use gonio::light::irradiance::in_closed_form;
 use gonio::light::{Disk, Environment, Frame, Light, Sky, direction, read};
-use gonio::plan::{Lobe, Precision};
-use gonio::quadrature::gauss_legendre;
+use gonio::model::lobe::Lobe;
 use gonio::reference::light as reference;
 use gonio::scene::{Scene, parse_recipe};
+use gonio::shader::{Kernel, compose, validate};
 use gonio::table::Table;
+use gonio::table::axis::{Axis, Variable};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -91,7 +93,7 @@ fn a_constant_light_gives_pi() {
     let map = Light::Map(Environment::new(1, 1, vec![[1.0, 2.0, 0.5]]).unwrap());
     for evaluator in evaluators() {
         let table =
-            order(evaluator, &map, Check::All).irradiance(grid(8, 8), &mut Stages::default()).unwrap();
+            order(evaluator, &map, Check::All).irradiance(grid(8, 8), &mut Timings::default()).unwrap();
         for texel in 0..table.texels() {
             let e = std::array::from_fn(|c| table.value(texel, c));
             close3(e, [PI, 2.0 * PI, 0.5 * PI], 1e-6);
@@ -135,7 +137,7 @@ fn a_sun_and_a_sky_keep_their_energy() {
     let light = Light::Map(map.clone());
     for evaluator in evaluators() {
         let table =
-            order(evaluator, &light, Check::All).irradiance(grid(16, 16), &mut Stages::default()).unwrap();
+            order(evaluator, &light, Check::All).irradiance(grid(16, 16), &mut Timings::default()).unwrap();
         let off = table.error.measured_max.unwrap();
         println!("{}: {off:.1e}, estimate {:?}", table.precision, table.error.estimate);
         assert!(off < 1e-4, "{:?}", table.error);
@@ -151,7 +153,7 @@ fn a_sun_and_a_sky_keep_their_energy() {
     let one = |t: f64, p: f64| {
         let axes = [listed(Variable::ThetaN, &[t]), listed(Variable::PhiN, &[p.rem_euclid(TAU)])];
         order(device(), &light, Check::Sample(0))
-            .irradiance(axes, &mut Stages::default())
+            .irradiance(axes, &mut Timings::default())
             .unwrap()
             .value(0, 0)
     };
@@ -173,7 +175,7 @@ fn the_comparison_can_fail() {
     assert!((right[0] - wrong[0]).abs() > 1e-4 * right[0]);
     let light = Light::Map(turned);
     let axes = [listed(Variable::ThetaN, &[1.0]), listed(Variable::PhiN, &[1.0])];
-    let table = order(device(), &light, Check::All).irradiance(axes, &mut Stages::default()).unwrap();
+    let table = order(device(), &light, Check::All).irradiance(axes, &mut Timings::default()).unwrap();
     close(table.value(0, 0), wrong[0], 1e-5);
     assert!((table.value(0, 0) - right[0]).abs() > 1e-4 * right[0]);
 }
@@ -203,7 +205,7 @@ fn a_museum_lights_as_the_reference_says() {
     assert_eq!((map.width(), map.height()), (512, 256));
     let light = Light::Map(map);
     let order = order(device(), &light, Check::Sample(256));
-    let table = order.irradiance(grid(32, 64), &mut Stages::default()).unwrap();
+    let table = order.irradiance(grid(32, 64), &mut Timings::default()).unwrap();
     println!("measured {:?}, estimate {:?}", table.error.measured_max, table.error.estimate);
     assert!(
         table.error.texels_checked >= 256 && table.error.measured_max.unwrap() < 1e-4,
@@ -212,7 +214,7 @@ fn a_museum_lights_as_the_reference_says() {
     );
     assert!(table.error.estimate.unwrap() < 1e-4, "{:?}", table.error);
     order.within_tolerance(&table).unwrap();
-    let (_, off) = order.harmonics(&table, &mut Stages::default()).unwrap();
+    let (_, off) = order.harmonics(&table, &mut Timings::default()).unwrap();
     println!("three bands miss E by {off:.4} of ∫ L dω");
     assert!(off > 1e-3 && off < TRUNCATION, "{off}");
 }
@@ -332,7 +334,7 @@ fn equation_9_no_more_leaves_than_came() {
         let scene = scene(lobe);
         let order = order(device(), &light, Check::Sample(0));
         let order = Order { tolerance: 1e-3, ..order };
-        let [_, share] = order.radiosity(&scene, "m", grid(3, 4), &mut Stages::default()).unwrap();
+        let [_, share] = order.radiosity(&scene, "m", grid(3, 4), &mut Timings::default()).unwrap();
         for texel in 0..share.texels() {
             let share = share.value(texel, 0);
             assert!(share > 0.5 && share <= 1.0 + 1e-3, "{lobe}: {share}");
@@ -367,7 +369,7 @@ fn equation_11_outgoing_radiance() {
             let one = scene(&text);
             let order = Order { tolerance: 1e-3, ..order(device(), &light, Check::All) };
             let [exact, _] =
-                order.radiance(one.material("m").unwrap(), &[], axes(view), &mut Stages::default()).unwrap();
+                order.radiance(one.material("m").unwrap(), &[], axes(view), &mut Timings::default()).unwrap();
             println!("roughness {roughness}: {:?} {:?}", exact.error.measured_max, exact.error.estimate);
             order.within_tolerance(&exact).unwrap();
         }
@@ -426,7 +428,8 @@ fn disks_and_skies_send_back_what_the_definition_says() {
                 ];
                 let order = Order { tolerance, ..order(evaluator, &light, Check::All) };
                 let material = material.material("m").unwrap();
-                let [exact, _] = order.radiance(material, &[0.1, 0.5], axes, &mut Stages::default()).unwrap();
+                let [exact, _] =
+                    order.radiance(material, &[0.1, 0.5], axes, &mut Timings::default()).unwrap();
                 println!("{tolerance}: {:?} {:?}", exact.error.measured_max, exact.error.estimate);
                 assert_eq!(exact.error.texels_checked, 2 * thetas.len());
                 order.within_tolerance(&exact).unwrap();
@@ -443,7 +446,7 @@ fn radiosity_is_held_to_the_reference() {
     for light in lights {
         for evaluator in evaluators() {
             let order = order(evaluator, &light, Check::All);
-            let tables = order.radiosity(&one, "m", grid(3, 2), &mut Stages::default()).unwrap();
+            let tables = order.radiosity(&one, "m", grid(3, 2), &mut Timings::default()).unwrap();
             for table in &tables {
                 println!("{}: {:?}", table.name, table.error.measured_max);
                 assert_eq!(table.error.texels_checked, 6);
@@ -460,8 +463,8 @@ fn harmonics_on_the_device_are_the_references() {
         let light = Light::Map(sun_and_sky(width, height));
         for evaluator in evaluators() {
             let order = order(evaluator, &light, Check::All);
-            let irradiance = order.irradiance(grid(4, 4), &mut Stages::default()).unwrap();
-            let (tables, _) = order.harmonics(&irradiance, &mut Stages::default()).unwrap();
+            let irradiance = order.irradiance(grid(4, 4), &mut Timings::default()).unwrap();
+            let (tables, _) = order.harmonics(&irradiance, &mut Timings::default()).unwrap();
             for table in tables {
                 let error = table.error;
                 println!("{} in {}: {:?}", table.name, table.precision, error.measured_max);
@@ -499,7 +502,7 @@ fn exr(dir: &Path, name: &str, width: usize, height: usize, texels: Vec<f32>) ->
     let light = Light::Constant([1.0; 3]);
     let axes = [nodes(Variable::ThetaN, height, [0.0, PI]), nodes(Variable::PhiN, width, [0.0, TAU])];
     let table =
-        order(&Evaluator::Cpu, &light, Check::Sample(0)).irradiance(axes, &mut Stages::default()).unwrap();
+        order(&Evaluator::Cpu, &light, Check::Sample(0)).irradiance(axes, &mut Timings::default()).unwrap();
     let table = Table { values: texels.into(), ..table };
     let path = dir.join(name);
     std::fs::write(&path, Format::Exr.encode(&table, &Provenance::new()).unwrap()).unwrap();
@@ -570,7 +573,7 @@ fn a_map_of_16384_columns_is_integrated() {
     let map = Environment::new(width, height, (0..width * height).map(texel).collect()).unwrap();
     let light = Light::Map(map);
     let order = order(device(), &light, Check::All);
-    let table = order.irradiance(grid(3, 3), &mut Stages::default()).unwrap();
+    let table = order.irradiance(grid(3, 3), &mut Timings::default()).unwrap();
     println!("{:?} {}", table.error.measured_max, table.rule);
     order.within_tolerance(&table).unwrap();
 }

@@ -2,11 +2,14 @@
 //! delta is never returned as a number.
 
 use crate::common::*;
-use gonio::axis::Variable::{DeltaPhi, Mu, ThetaE, ThetaI};
+use gonio::bake::points::Points;
+use gonio::base::angles::Angles;
+use gonio::base::precision::{STORED_F32, VALUE_F32};
 use gonio::check::Check;
-use gonio::plan::{Lobe, STORED_F32, TablePlan, VALUE_F32};
-use gonio::points::{Angles, Points};
-use gonio::quantity::{BRDF, SPLIT_SUM};
+use gonio::model::lobe::Lobe;
+use gonio::plan::TablePlan;
+use gonio::table::axis::Variable::{DeltaPhi, Mu, ThetaE, ThetaI};
+use gonio::table::quantity::{BRDF, SPLIT_SUM};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// At fixed μ > 0 what is left of the difference falls as α²: slopes of a lobe are of size α, their mean is

@@ -1,12 +1,12 @@
 //! Promises of the distributions of normals: limits that they share, closed forms, and what they are known to break.
 
 use crate::common::*;
-use gonio::axis::Variable::{DeltaPhi, Mu, ThetaE, ThetaI};
+use gonio::base::precision::INTEGRAL_F32;
 use gonio::check::Check;
-use gonio::plan::INTEGRAL_F32;
-use gonio::quantity::{BRDF, RHO_DH, RHO_HH, SPLIT_SUM};
+use gonio::model::parameters::Setting;
 use gonio::reference::{Angles, MIN_MU};
-use gonio::setting::Setting;
+use gonio::table::axis::Variable::{DeltaPhi, Mu, ThetaE, ThetaI};
+use gonio::table::quantity::{BRDF, RHO_DH, RHO_HH, SPLIT_SUM};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Names and γ.

@@ -2,14 +2,17 @@
 //! for each combination; those that tell azimuths from each other are in `anisotropy.rs`.
 
 use crate::common::*;
-use gonio::axis::Variable::{DeltaPhi, Mu, ThetaE, ThetaI};
+use gonio::base::precision::{INTEGRAL_F32, Precision};
 use gonio::check::Check;
-use gonio::factor::Compensation;
-use gonio::gpu::{Kernel, compose, validate};
-use gonio::models::{self, Integral, MICROFACETS, Model};
-use gonio::plan::{INTEGRAL_F32, Plan, Precision, Selection, TablePlan};
-use gonio::quantity::{BRDF, RHO_DH, RHO_HH, SPLIT_SUM};
+use gonio::model;
+use gonio::model::compensation::Compensation;
+use gonio::model::{Integral, MICROFACETS, Model};
+use gonio::plan::TablePlan;
+use gonio::scene::planner::{Plan, Selection};
 use gonio::scene::{Distribution, Material, MaterialLobe, Scene, Weights};
+use gonio::shader::{Kernel, compose, validate};
+use gonio::table::axis::Variable::{DeltaPhi, Mu, ThetaE, ThetaI};
+use gonio::table::quantity::{BRDF, RHO_DH, RHO_HH, SPLIT_SUM};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The combinations of each term with the others' defaults: what one term makes of a value, another changes by a factor.
@@ -247,9 +250,9 @@ fn unknown_terms_are_refused_with_the_words_there_are() {
     assert!(masking.contains("smith-correlated, smith-separable, schlick-ggx"), "{masking}");
     let fresnel = ggx.with_terms(None, Some("exact")).unwrap_err().to_string();
     assert!(fresnel.contains("schlick, none, dielectric, conductor, f82"), "{fresnel}");
-    let mirror = models::find("mirror").unwrap().with_terms(Some("none"), None).unwrap_err().to_string();
+    let mirror = model::find("mirror").unwrap().with_terms(Some("none"), None).unwrap_err().to_string();
     assert!(mirror.contains("mirror has no masking"), "{mirror}");
     let lambert = model("lambert").with_terms(None, Some("none")).unwrap_err().to_string();
     assert!(lambert.contains("no microfacet model"), "{lambert}");
-    assert!(models::find("ggx-none").is_err());
+    assert!(model::find("ggx-none").is_err());
 }

@@ -2,13 +2,16 @@
 //! made and compared without a device.
 
 use crate::common::model;
-use gonio::axis::{Axis, Mapping, Positions, Variable};
-use gonio::factor::Compensation;
-use gonio::gpu::{Kernel, compose, validate};
-use gonio::models::MODELS;
-use gonio::plan::{Plan, Precision, Rule, Selection, TablePlan};
-use gonio::quantity::{BRDF, RHO_DH, SPLIT_SUM};
+use gonio::base::precision::Precision;
+use gonio::model::MODELS;
+use gonio::model::compensation::Compensation;
+use gonio::plan::TablePlan;
+use gonio::scene::planner::{Plan, Selection};
 use gonio::scene::{Distribution, Material, MaterialLobe, Scene, Weights};
+use gonio::shader::{Kernel, compose, validate};
+use gonio::table::axis::{Axis, Mapping, Positions, Variable};
+use gonio::table::quantity::{BRDF, RHO_DH, SPLIT_SUM};
+use gonio::table::rule::Rule;
 
 fn material(name: &str, model: &str, roughness: Option<Distribution>) -> Material {
     let lobe = MaterialLobe {
@@ -139,7 +142,7 @@ fn plans_are_values() {
 #[test]
 fn what_cannot_be_baked_is_refused_with_the_remedy() {
     let theta = || vec![Axis::natural(Variable::ThetaI, 8).unwrap()];
-    let refusal = |result: gonio::error::Result<TablePlan>| result.unwrap_err().to_string();
+    let refusal = |result: gonio::base::error::Result<TablePlan>| result.unwrap_err().to_string();
     let no_roughness = refusal(TablePlan::basis("t", &RHO_DH, model("ggx"), None, theta()));
     assert!(no_roughness.contains("needs a roughness"), "{no_roughness}");
     let wrong_axes = refusal(TablePlan::basis("t", &SPLIT_SUM, model("lambert"), None, theta()));

@@ -3,12 +3,12 @@
 
 use crate::common::*;
 use data_url::DataUrl;
-use gonio::axis::{Axis, Variable};
 use gonio::bake::Evaluator;
 use gonio::check::Check;
-use gonio::models::MODELS;
+use gonio::model::MODELS;
 use gonio::plan::TablePlan;
-use gonio::quantity::RHO_DH;
+use gonio::table::axis::{Axis, Variable};
+use gonio::table::quantity::RHO_DH;
 use image::RgbImage;
 use quick_xml::Reader;
 use quick_xml::events::Event;
@@ -343,7 +343,7 @@ fn the_gallery_has_every_model_and_is_whole() {
     let html_but_names = html.replace("http://www.w3.org/2000/svg", "");
     assert!(!html.contains("src="));
     assert!(!html_but_names.contains("http:") && !html_but_names.contains("https:"));
-    assert_eq!(gonio::files::verify(&gallery).unwrap(), Vec::<String>::new());
+    assert_eq!(gonio::io::verify(&gallery).unwrap(), Vec::<String>::new());
 
     // A stranger's file is not overwritten, and what was there stays.
     let before = names(&gallery);
@@ -362,7 +362,7 @@ fn the_gallery_has_every_model_and_is_whole() {
 fn the_gallerys_commands_make_its_pictures() {
     let dir = tempfile::tempdir().unwrap();
     succeed(dir.path(), &["gallery", "--out", "gallery", "--device", "cpu"]);
-    let manifest = gonio::files::read_manifest(&dir.path().join("gallery")).unwrap();
+    let manifest = gonio::io::read_manifest(&dir.path().join("gallery")).unwrap();
     let pictures = manifest["pictures"].as_array().unwrap();
     assert!(pictures.len() > MODELS.len());
     let lambert = pictures.iter().find(|picture| picture["name"] == "lambert").unwrap();

@@ -1,7 +1,7 @@
 //! Radiometry: closed forms against other closed forms, against sums, and what a beam keeps along its way.
 
-use gonio::quadrature::gauss_legendre;
-use gonio::radiometry::{
+use gonio::base::quadrature::gauss_legendre;
+use gonio::base::radiometry::{
     Beam, Cell, HEMISPHERE, LIGHT_SPEED, PLANCK, Rectangle, SPHERE, apparent, cone, photon_energy, photons,
     polygon, projected_cone, projected_polygon, triangle,
 };
@@ -13,7 +13,7 @@ fn sum(cell: &Cell, f: impl Fn([f64; 3]) -> f64) -> f64 {
     let at = |[a, b]: [f64; 2], x: f64| a + (b - a) * x;
     let size = (cell.theta[1] - cell.theta[0]) * (cell.phi[1] - cell.phi[0]);
     let terms = rule.iter().flat_map(|t| rule.iter().map(move |p| (t, p)));
-    let term = |(t, p): (&gonio::quadrature::Node, &gonio::quadrature::Node)| {
+    let term = |(t, p): (&gonio::base::quadrature::Node, &gonio::base::quadrature::Node)| {
         let ((st, ct), (sp, cp)) = (at(cell.theta, t.x).sin_cos(), at(cell.phi, p.x).sin_cos());
         t.weight * p.weight * st * f([st * cp, st * sp, ct])
     };

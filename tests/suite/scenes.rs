@@ -5,9 +5,9 @@
 #[allow(dead_code, missing_docs)]
 mod make_demo_scene;
 
-use gonio::factor::Compensation;
-use gonio::plan::Rule;
+use gonio::model::compensation::Compensation;
 use gonio::scene::{Distribution, Material, Scene, SubjectRequest, Weights, read};
+use gonio::table::rule::Rule;
 use make_demo_scene::ROUGHNESS;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -725,7 +725,7 @@ fn write(folder: &TempDir, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
     path
 }
 
-fn read_json(root: &Value) -> gonio::error::Result<Scene> {
+fn read_json(root: &Value) -> gonio::base::error::Result<Scene> {
     let folder = TempDir::new().unwrap();
     read(&write(&folder, "x.gltf", root.to_string()))
 }

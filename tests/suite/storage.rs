@@ -3,16 +3,18 @@
 
 use crate::common::readers;
 use crate::common::{device, listed, model};
-use gonio::axis::{Axis, Mapping, Positions, Variable};
-use gonio::bake::{Evaluator, Stages, Unobserved, within_tolerance};
+use gonio::bake::{Evaluator, Unobserved, within_tolerance};
+use gonio::base::timings::Timings;
 use gonio::check::Check;
-use gonio::files::{Format, Provenance, TableEntry, TableSet};
-use gonio::plan::{Plan, Selection, TablePlan};
-use gonio::quantity::{BRDF, SPLIT_SUM};
+use gonio::io::{Format, Provenance, TableEntry, TableSet};
+use gonio::plan::TablePlan;
 use gonio::reference;
 use gonio::scene;
-use gonio::storage::Storage;
+use gonio::scene::planner::{Plan, Selection};
 use gonio::table::Table;
+use gonio::table::axis::{Axis, Mapping, Positions, Variable};
+use gonio::table::quantity::{BRDF, SPLIT_SUM};
+use gonio::table::storage::Storage;
 use serde_json::json;
 use std::path::Path;
 
@@ -25,7 +27,7 @@ fn sqrt_nodes(variable: Variable, count: usize) -> Axis {
 }
 
 fn bake(plan: &TablePlan, check: Check) -> gonio::Result<Table> {
-    device().bake(plan, check, &mut Stages::default(), &Unobserved)
+    device().bake(plan, check, &mut Timings::default(), &Unobserved)
 }
 
 /// Bits of halves and of unorm16 in files are those of the nearest value, ties to even, by hand.
@@ -169,7 +171,7 @@ fn the_optimiser_meets_what_the_usual_table_does_not_in_a_quarter_of_its_bytes()
     assert!(choice.runner_up.as_ref().unwrap().bytes >= choice.chosen.bytes, "{choice}");
     for evaluator in [device(), &Evaluator::Cpu] {
         let bake =
-            |plan| evaluator.bake(plan, Check::Sample(64), &mut Stages::default(), &Unobserved).unwrap();
+            |plan| evaluator.bake(plan, Check::Sample(64), &mut Timings::default(), &Unobserved).unwrap();
         let (auto_table, usual_table) = (bake(auto), bake(usual));
         let max = |table: &Table| table.error.interpolation.as_ref().unwrap().max.unwrap();
         println!(

@@ -2,12 +2,14 @@
 //! was.
 
 use crate::common::*;
-use gonio::bake::{Baked, Evaluator, Observer, Options, Stages, Streaming, Unobserved, bake_set};
+use gonio::backend::gpu::DeviceChoice;
+use gonio::bake::{Evaluator, Observer, Unobserved};
+use gonio::base::timings::Timings;
+use gonio::batch::{Baked, Options, Streaming, bake_set};
 use gonio::check::Check;
-use gonio::files::Format;
-use gonio::gpu::DeviceChoice;
-use gonio::plan::{Plan, Selection};
-use gonio::storage::Storage;
+use gonio::io::Format;
+use gonio::scene::planner::{Plan, Selection};
+use gonio::table::storage::Storage;
 use gonio::{Result, scene};
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Write};
@@ -61,7 +63,7 @@ fn bake_recipe(
 ) -> Result<Baked> {
     let plan = Plan::new(&scene::read(recipe)?, &Selection::default())?;
     let options = Options { formats: Format::ALL.to_vec(), check, streaming };
-    bake_set(&plan, recipe, evaluator, out, &options, Stages::default(), observer)
+    bake_set(&plan, recipe, evaluator, out, &options, Timings::default(), observer)
 }
 
 /// Every table file of a set: its name and bytes.
@@ -84,7 +86,7 @@ fn streamed_files_are_those_of_the_whole_table() {
                 let out = folder.path().join(format!("{name} {check:?} {how}"));
                 let baked = bake_recipe(evaluator, &recipe, &out, streaming, check, &Unobserved).unwrap();
                 assert_eq!(baked.tiles.all, if how == "whole" { 0 } else { 23 });
-                assert_eq!(gonio::files::verify(&out).unwrap(), Vec::<String>::new());
+                assert_eq!(gonio::io::verify(&out).unwrap(), Vec::<String>::new());
                 assert!(!out.join(".gonio-partial").exists());
                 files(&out)
             });
@@ -140,7 +142,7 @@ axes = { theta_i = 5, theta_e = 5, delta_phi = 7 }
     // A caller who wants one piece gets the remedy, not an abort.
     let plan = huge("").unwrap().tables.remove(0);
     let why =
-        device().bake(&plan, Check::Sample(0), &mut Stages::default(), &Unobserved).unwrap_err().to_string();
+        device().bake(&plan, Check::Sample(0), &mut Timings::default(), &Unobserved).unwrap_err().to_string();
     assert!(why.contains("too many for one piece"), "{why}");
 }
 

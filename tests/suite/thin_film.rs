@@ -2,13 +2,14 @@
 //! Fresnel term promises.
 
 use crate::common::*;
-use gonio::axis::Variable::Mu;
 use gonio::bake::Evaluator;
+use gonio::base::precision::Precision;
 use gonio::check::Check;
-use gonio::gpu::{Kernel, compose, validate};
-use gonio::models::Model;
-use gonio::plan::{Precision, TablePlan};
-use gonio::quantity::{BRDF, SPLIT_SUM};
+use gonio::model::Model;
+use gonio::plan::TablePlan;
+use gonio::shader::{Kernel, compose, validate};
+use gonio::table::axis::Variable::Mu;
+use gonio::table::quantity::{BRDF, SPLIT_SUM};
 use std::f64::consts::{PI, TAU};
 
 /// thickness nm, η of the film, F0 of the base, channel.

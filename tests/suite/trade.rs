@@ -2,13 +2,15 @@
 //! device as on the CPU path, and the measurement says what it did.
 
 use crate::common::*;
-use gonio::axis::{Axis, Mapping, Positions, Variable};
 use gonio::bake::{Evaluator, Unobserved};
-use gonio::gpu::{Kernel, compose, validate};
-use gonio::plan::{Precision, Rule, TablePlan};
-use gonio::quantity::{RHO_DH, RHO_HH, SPLIT_SUM};
-use gonio::storage::Storage;
-use gonio::trade::{Cost, Options, costs, measure};
+use gonio::base::precision::Precision;
+use gonio::lab::trade::{Cost, Options, costs, measure};
+use gonio::plan::TablePlan;
+use gonio::shader::{Kernel, compose, validate};
+use gonio::table::axis::{Axis, Mapping, Positions, Variable};
+use gonio::table::quantity::{RHO_DH, RHO_HH, SPLIT_SUM};
+use gonio::table::rule::Rule;
+use gonio::table::storage::Storage;
 use std::process::Command;
 
 fn rough(count: usize, mus: usize) -> TablePlan {
@@ -183,7 +185,8 @@ fn storage_is_a_dimension() {
             }
         }
     }
-    let stored = |p: &&gonio::trade::Point| p.storage.bytes() == if p.precision == "f64" { 8 } else { 4 };
+    let stored =
+        |p: &&gonio::lab::trade::Point| p.storage.bytes() == if p.precision == "f64" { 8 } else { 4 };
     let whole = trade.points.iter().filter(stored).count();
     assert_eq!(trade.points.len(), whole + 3 + 5);
     assert!(trade.points.iter().all(|p| stored(&p) || p.method == "warped" && !p.on_front));

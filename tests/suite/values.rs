@@ -2,12 +2,12 @@
 //! the specular peak survives f32.
 
 use crate::common::*;
-use gonio::axis::Variable::{DeltaPhi, ThetaE, ThetaI};
+use gonio::table::axis::Variable::{DeltaPhi, ThetaE, ThetaI};
 
 use gonio::check::Check;
-use gonio::models::MODELS;
+use gonio::model::MODELS;
 use gonio::plan::TablePlan;
-use gonio::quantity::BRDF;
+use gonio::table::quantity::BRDF;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// θ and δφ: the extremes, and a low-discrepancy set between them. δφ has its own extremes: the peak,

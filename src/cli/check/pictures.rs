@@ -1,13 +1,13 @@
 //! Pictures of a check: ρ_dh against θi for several parameters, and the relative error against the reference
 //! over θi and θe, at the parameters and the δφ of its worst input.
 
-use crate::axis::{Axis, Variable};
-use crate::error::Result;
-use crate::files::{Format, Provenance, write_together};
-use crate::points::Angles;
-use crate::promises::{FAINT, Finding, Parameter, Report, Subject};
-use crate::storage::Storage;
+use crate::base::angles::Angles;
+use crate::base::error::Result;
+use crate::io::{Format, Provenance, write_together};
+use crate::table::axis::{Axis, Variable};
+use crate::table::storage::Storage;
 use crate::table::{ErrorKind, Table, TableError};
+use crate::verify::{FAINT, Finding, Parameter, Report, Subject};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};

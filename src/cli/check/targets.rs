@@ -1,15 +1,17 @@
 //! What `gonio check` checks of our own: a model, or every basis and material of a scene or recipe.
 
-use super::Args;
-use crate::axis::Variable;
 use crate::bake::Evaluator;
+use crate::base::error::{Error, Result};
+use crate::cli::check::Args;
 use crate::cli::subject;
-use crate::error::{Error, Result};
-use crate::factor::Compensation;
-use crate::models::{self, Model};
-use crate::plan::{Lobe, constant_lobes};
-use crate::promises::{Parameter, Sum};
+use crate::model;
+use crate::model::Model;
+use crate::model::compensation::Compensation;
+use crate::model::lobe::Lobe;
+use crate::scene::planner::constant_lobes;
 use crate::scene::{Distribution, Scene, SubjectRequest};
+use crate::table::axis::Variable;
+use crate::verify::{Parameter, Sum};
 use std::path::Path;
 
 /// A subject, and the command that evaluates it, but for its parameters and directions.
@@ -20,7 +22,7 @@ pub struct Target<'a> {
 
 /// `--model NAME` with `--set`: what is not set is checked over its whole range.
 pub fn model<'a>(args: &Args, name: &str, evaluator: &'a Evaluator) -> Result<Target<'a>> {
-    let mut model = models::find(name)?;
+    let mut model = model::find(name)?;
     let (mut fixed, mut ranges) = (Vec::new(), Vec::new());
     let mut compensation = Compensation::None;
     for set in &args.set {
@@ -92,7 +94,7 @@ pub fn scene<'a>(
     };
     let mut targets = Vec::new();
     if material.is_none() {
-        for model in models::all() {
+        for model in model::all() {
             if let Some(range) = used(scene, model) {
                 targets.push(basis(model, range, evaluator)?);
             }

@@ -1,12 +1,13 @@
 //! A list of pairs of directions, from file to file, piece by piece: memory does not grow with the list.
 
-use super::{Args, is_sane, subject};
+use crate::bake::points::Points;
 use crate::bake::{Evaluator, Observer};
+use crate::base::angles::Angles;
+use crate::base::error::{Error, Result};
+use crate::cli::eval::{Args, is_sane, subject};
 use crate::cli::watch::Watch;
 use crate::cli::{HEADING, print, print_json};
-use crate::error::{Error, Result};
-use crate::files::{List, Pairs};
-use crate::points::{Angles, Points};
+use crate::io::{List, Pairs};
 use serde_json::json;
 use std::path::Path;
 use std::time::Instant;

@@ -1,13 +1,17 @@
 //! One pair of directions: f on the device, by the reference, and what it is made of.
 
-use super::{Args, is_sane, subject};
 use crate::bake::Evaluator;
-use crate::check::{self, VALUE_FLOOR};
+use crate::bake::points::Points;
+use crate::base::angles::Angles;
+use crate::base::error::{Error, Result};
+use crate::base::half_angle::MU_MIN;
+use crate::check;
+use crate::check::VALUE_FLOOR;
+use crate::check::reference_angles;
+use crate::cli::eval::{Args, is_sane, subject};
 use crate::cli::{HEADING, print, print_json};
-use crate::error::{Error, Result};
-use crate::pair::MU_MIN;
-use crate::plan::{Lobe, TablePlan};
-use crate::points::{Angles, Points};
+use crate::model::lobe::Lobe;
+use crate::plan::TablePlan;
 use serde::Serialize;
 use serde_json::json;
 
@@ -78,7 +82,7 @@ fn relative_difference(value: &[f32], reference: &[f64]) -> f64 {
 }
 
 fn factors(lobe: &Lobe, angles: &Angles) -> Option<Factors> {
-    let factors = lobe.model.reference?.factors(&angles.of_reference(), &lobe.setting_at(None))?;
+    let factors = lobe.model.reference?.factors(&reference_angles(angles), &lobe.setting_at(None))?;
     let f = |&[a, b]: &[f64; 2]| a * factors.f[0] + b * factors.f[1];
     let f = lobe.weights.iter().map(f).collect();
     Some(Factors { model: lobe.model.name, d: factors.d, g2: factors.g2, f })

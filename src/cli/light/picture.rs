@@ -1,14 +1,15 @@
 //! What the picture of a light shows: the light, its irradiance beside it, and a sphere of the material lit by it.
 
-use super::draw_light;
 use crate::bake::{Evaluator, Observer};
-use crate::error::Result;
-use crate::files::{Ball, Sheet};
+use crate::base::error::Result;
+use crate::figure::light;
+use crate::figure::light::{Ball, Sheet};
 use crate::light::bake::lobes_of;
-use crate::light::exitant::{self, View};
+use crate::light::exitant;
+use crate::light::exitant::View;
 use crate::light::irradiance::{Prepared, in_closed_form};
 use crate::light::{Frame, Light, direction};
-use crate::plan::Lobe;
+use crate::model::lobe::Lobe;
 use crate::scene::Material;
 use std::f64::consts::{PI, TAU};
 
@@ -60,7 +61,7 @@ pub fn draw(
     for ball in &mut balls {
         ball.pixels = scaled(std::mem::take(&mut ball.pixels), 1.0);
     }
-    draw_light(&Sheet {
+    light::draw(&Sheet {
         title: name.to_owned(),
         subtitle: light.summary(),
         radiance: (LIGHT[0], scaled(radiance, 1.0)),

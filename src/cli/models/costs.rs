@@ -1,12 +1,12 @@
 //! `gonio models --costs`
 
+use crate::backend::gpu::DeviceChoice;
 use crate::bake::{Evaluator, Observer};
+use crate::base::error::{Error, Result};
 use crate::cli::watch::Watch;
 use crate::cli::{HEADING, device_json, print_beside, print_json};
-use crate::error::{Error, Result};
-use crate::gpu::DeviceChoice;
-use crate::models::Model;
-use crate::trade::{Cost, costs};
+use crate::lab::trade::{Cost, costs};
+use crate::model::Model;
 use serde_json::json;
 
 /// What each tolerance costs each model, measured on a device.

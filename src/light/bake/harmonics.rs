@@ -1,14 +1,16 @@
 //! Nine spherical-harmonic coefficients, of a light's radiance and of its irradiance.
 
-use super::{IRRADIANCE, Order, Values, normals, timed};
-use crate::axis::{Axis, Variable};
-use crate::bake::{Evaluator, Stages};
+use crate::bake::Evaluator;
+use crate::base::error::{Error, Result};
+use crate::base::timings::Timings;
 use crate::check::Check;
-use crate::error::{Error, Result};
 use crate::light::Light;
-use crate::light::harmonics::{self, Coefficients, Factors, TRUNCATION};
+use crate::light::bake::{IRRADIANCE, Order, Values, normals, timed};
+use crate::light::harmonics;
+use crate::light::harmonics::{Coefficients, Factors, TRUNCATION};
 use crate::reference::light as reference;
 use crate::table::Table;
+use crate::table::axis::{Axis, Variable};
 
 /// Roundings of a term on the device, one after the other: of its two factors and products, and of sums of 16 terms and of
 /// 16 such sums.
@@ -24,7 +26,7 @@ impl Order<'_> {
     ///
     /// # Errors
     /// When the device fails, or the convolved ones miss E by more than the truncation explains.
-    pub fn harmonics(&self, irradiance: &Table, stages: &mut Stages) -> Result<([Table; 2], f64)> {
+    pub fn harmonics(&self, irradiance: &Table, stages: &mut Timings) -> Result<([Table; 2], f64)> {
         self.observer.begin("harmonics");
         let mut seconds = 0.0;
         let (radiance, on_device) = timed(&mut seconds, || match (self.light, self.evaluator) {

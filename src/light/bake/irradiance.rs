@@ -1,13 +1,13 @@
 //! Irradiance over normals.
 
-use super::{FLOOR, IRRADIANCE, Order, Truths, Values, largest, normals, timed};
-use crate::axis::Axis;
-use crate::bake::Stages;
-use crate::error::Result;
+use crate::base::error::Result;
+use crate::base::timings::Timings;
+use crate::light::bake::{FLOOR, IRRADIANCE, Order, Truths, Values, largest, normals, timed};
 use crate::light::irradiance::{Prepared, in_closed_form};
 use crate::light::{Environment, Light};
 use crate::reference::light as reference;
 use crate::table::Table;
+use crate::table::axis::Axis;
 use std::time::Instant;
 
 /// Pieces of a column that the horizon crosses, at most.
@@ -18,7 +18,7 @@ impl Order<'_> {
     ///
     /// # Errors
     /// When the device fails, or a value is negative or not finite.
-    pub fn irradiance(&self, axes: [Axis; 2], stages: &mut Stages) -> Result<Table> {
+    pub fn irradiance(&self, axes: [Axis; 2], stages: &mut Timings) -> Result<Table> {
         self.observer.begin("irradiance");
         let normals = normals(&axes);
         let values = timed(&mut stages.dispatch, || match self.light {

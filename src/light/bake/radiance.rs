@@ -1,16 +1,17 @@
 //! Exitant radiance over roughness, normals and directions, and what the split sum makes of it.
 
-use super::{MARGIN, Order, RADIANCE, Values, estimate, frames, lobes_of, timed};
-use crate::axis::{Axis, Variable};
-use crate::bake::Stages;
+use crate::base::angles::Angles;
+use crate::base::error::Result;
+use crate::base::timings::Timings;
 use crate::check::reference_of;
-use crate::error::Result;
-use crate::light::exitant::{self, View};
-use crate::plan::Lobe;
-use crate::points::Angles;
+use crate::light::bake::{MARGIN, Order, RADIANCE, Values, estimate, frames, lobes_of, timed};
+use crate::light::exitant;
+use crate::light::exitant::View;
+use crate::model::lobe::Lobe;
 use crate::reference::light as reference;
 use crate::scene::Material;
 use crate::table::Table;
+use crate::table::axis::{Axis, Variable};
 
 impl Order<'_> {
     /// Le of a material over roughness (where `roughness` says one or more), normals and ωe, and beside it LD(r) (F0·A +
@@ -23,7 +24,7 @@ impl Order<'_> {
         material: &Material,
         roughness: &[f64],
         axes: [Axis; 4],
-        stages: &mut Stages,
+        stages: &mut Timings,
     ) -> Result<[Table; 2]> {
         let frames = frames(&axes[0], &axes[1]);
         let directions = || axes[2].values.iter().flat_map(|&t| axes[3].values.iter().map(move |&p| (t, p)));

@@ -1,16 +1,16 @@
 //! Radiosity over normals, and what share of the irradiance it is.
 
-use super::radiance::weighed;
-use super::{IRRADIANCE, MARGIN, Order, Truths, Values, estimate, frames, lobes_of, timed};
-use crate::axis::Axis;
-use crate::bake::Stages;
+use crate::base::error::Result;
+use crate::base::timings::Timings;
 use crate::check::{Check, reference_albedo};
-use crate::error::Result;
+use crate::light::bake::radiance::weighed;
+use crate::light::bake::{IRRADIANCE, MARGIN, Order, Truths, Values, estimate, frames, lobes_of, timed};
 use crate::light::{Frame, exitant};
-use crate::plan::Lobe;
+use crate::model::lobe::Lobe;
 use crate::reference::light as reference;
 use crate::scene::Scene;
 use crate::table::Table;
+use crate::table::axis::Axis;
 
 impl Order<'_> {
     /// M of a material over normals, and M/E. `axes` are θn and φn.
@@ -22,7 +22,7 @@ impl Order<'_> {
         scene: &Scene,
         material: &str,
         axes: [Axis; 2],
-        stages: &mut Stages,
+        stages: &mut Timings,
     ) -> Result<[Table; 2]> {
         let lobes = lobes_of(scene.material(material)?, None)?;
         // E is held to the reference with M.

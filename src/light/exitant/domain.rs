@@ -1,6 +1,6 @@
 //! Where a light comes from: cells of directions, in each of which L is smooth or a block of texels.
 
-use super::nodes::NODE;
+use crate::light::exitant::nodes::NODE;
 use crate::light::{Disk, Environment, Frame, Light, Sky, angles};
 use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};

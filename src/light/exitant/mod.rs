@@ -13,13 +13,14 @@ mod refine;
 pub use prefiltered::{prefiltered, split_sum};
 pub use radiosity::radiosity;
 
-use super::irradiance;
-use super::{Frame, Light, direction};
+use crate::bake::points::Points;
 use crate::bake::{Evaluator, Observer};
-use crate::error::{Error, Result};
-use crate::models::Integral;
-use crate::plan::Lobe;
-use crate::points::{Angles, Points};
+use crate::base::angles::Angles;
+use crate::base::error::{Error, Result};
+use crate::light::irradiance;
+use crate::light::{Frame, Light, direction};
+use crate::model::Integral;
+use crate::model::lobe::Lobe;
 use std::f64::consts::PI;
 
 /// A surface and where it is seen from.

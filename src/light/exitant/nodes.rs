@@ -6,11 +6,11 @@
 //! sum to the exact solid angle. A texel that the horizon crosses has 3 × 3 nodes, on three meridians, each where it is
 //! above the surface: f cos θi of a lobe that is seen at grazing angles is not 0 there.
 
-use super::View;
-use super::domain::{Cell, Domain};
+use crate::base::angles::Angles;
+use crate::light::exitant::View;
+use crate::light::exitant::domain::{Cell, Domain};
 use crate::light::irradiance::range;
 use crate::light::{angles, direction, dot};
-use crate::points::Angles;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Gauss–Legendre's two nodes are ± this.

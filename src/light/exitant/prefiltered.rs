@@ -1,10 +1,10 @@
 //! What engines make of exitant radiance: pre-filtered radiance times the split sum.
 
-use super::{View, irradiance_of, radiance};
 use crate::bake::{Evaluator, Observer};
-use crate::error::Result;
+use crate::base::error::Result;
+use crate::light::exitant::{View, irradiance_of, radiance};
 use crate::light::{Frame, Light, angles};
-use crate::plan::Lobe;
+use crate::model::lobe::Lobe;
 use std::f64::consts::PI;
 
 /// LD, the pre-filtered radiance: Le over what a white sky would make of it, at n = v = r for each r, all weights 1.

@@ -1,15 +1,16 @@
 //! Radiosity M = ∫ Le cos θe dωe.
 
-use super::{Integrated, View, refine};
-use crate::axis::{Axis, Mapping, Positions, Variable};
-use crate::bake::{Evaluator, Observer, Stages, Unobserved};
+use crate::bake::{Evaluator, Observer, Unobserved};
+use crate::base::angles::Angles;
+use crate::base::error::{Error, Result};
+use crate::base::timings::Timings;
 use crate::check::Check;
-use crate::error::{Error, Result};
+use crate::light::exitant::{Integrated, View, refine};
 use crate::light::{Frame, Light};
 use crate::plan::TablePlan;
-use crate::points::Angles;
-use crate::quantity::{RHO_DH, RHO_HH};
 use crate::scene::Scene;
+use crate::table::axis::{Axis, Mapping, Positions, Variable};
+use crate::table::quantity::{RHO_DH, RHO_HH};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// M = ∫ Le cos θe dωe of a material under a light, of each frame: by Fubini ∫ ρ_dh(ωi) L cos θi dωi. The tolerance is
@@ -59,7 +60,7 @@ impl Albedo {
         let axis =
             Axis::new(Variable::ThetaI, Self::SAMPLES, [0.0, FRAC_PI_2], Positions::Nodes, Mapping::Linear)?;
         let plan = TablePlan::material(material, &RHO_DH, scene, material, vec![axis])?.with_tolerance(1e-6);
-        let table = evaluator.bake(&plan, Check::Sample(0), &mut Stages::default(), &Unobserved)?;
+        let table = evaluator.bake(&plan, Check::Sample(0), &mut Timings::default(), &Unobserved)?;
         let values = (0..table.texels()).map(|k| std::array::from_fn(|c| table.value(k, c))).collect();
         Ok(Self { values })
     }
@@ -76,6 +77,6 @@ impl Albedo {
 /// ρ_hh, R, G, B.
 fn mean_albedo(evaluator: &Evaluator, scene: &Scene, material: &str) -> Result<[f64; 3]> {
     let plan = TablePlan::material(material, &RHO_HH, scene, material, Vec::new())?.with_tolerance(1e-7);
-    let table = evaluator.bake(&plan, Check::Sample(0), &mut Stages::default(), &Unobserved)?;
+    let table = evaluator.bake(&plan, Check::Sample(0), &mut Timings::default(), &Unobserved)?;
     Ok(std::array::from_fn(|c| table.value(0, c)))
 }

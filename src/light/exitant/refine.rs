@@ -7,13 +7,13 @@
 //! where a lobe narrower than its cell would lie between the nodes unseen, cells are quartered until they are as
 //! narrow as half of the lobe.
 
-use super::domain::{Cell, Domain};
-use super::nodes::{Local, Nodes, Side, nodes};
-use super::{Integrated, View};
 use crate::bake::Observer;
-use crate::error::Result;
+use crate::base::angles::Angles;
+use crate::base::error::Result;
+use crate::light::exitant::domain::{Cell, Domain};
+use crate::light::exitant::nodes::{Local, Nodes, Side, nodes};
+use crate::light::exitant::{Integrated, View};
 use crate::light::{Light, angles};
-use crate::points::Angles;
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 

@@ -1,11 +1,11 @@
 //! Ashikhmin & Shirley 2000, *An Anisotropic Phong BRDF Model*, with nu = nv.
 
-use super::Classic;
-use super::blinn::{exponent, power};
+use crate::model::parameters::Setting;
+use crate::reference::classic::Classic;
+use crate::reference::classic::blinn::{exponent, power};
 use crate::reference::directions::Pair;
 use crate::reference::fresnel::schlick;
 use crate::reference::{Angles, Reference, definition};
-use crate::setting::Setting;
 use std::f64::consts::PI;
 
 /// ρs = √((nu + 1)(nv + 1))/(8π) (n·h)ⁿ / ((h·k) max(n·k1, n·k2)) F(k·h), by what F's Rs and 1 weigh.

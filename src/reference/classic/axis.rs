@@ -1,9 +1,9 @@
 //! Cosine lobes about an axis that is not the normal, and their hemispherical integrals in polar coordinates about it.
 
+use crate::model::parameters::Setting;
 use crate::reference::directions::{MIN_MU, Pair, sin_of};
 use crate::reference::quadrature::integrate;
 use crate::reference::{Angles, Reference};
-use crate::setting::Setting;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// (n + 2)/(2π) `scale` cosⁿγ, γ from the axis, 0 beyond 90°.

@@ -1,7 +1,7 @@
 //! Blinn's lobe.
 
-use super::Classic;
 use crate::reference::Reference;
+use crate::reference::classic::Classic;
 use crate::reference::directions::Pair;
 use std::f64::consts::PI;
 

@@ -1,8 +1,8 @@
 //! Lafortune's generalised cosine lobe, normalised, with Cx = Cy.
 
-use super::axis::{AboutAxis, Axis, exponent};
+use crate::model::parameters::{Parameters, Setting};
 use crate::reference::Reference;
-use crate::setting::{Parameters, Setting};
+use crate::reference::classic::axis::{AboutAxis, Axis, exponent};
 use std::f64::consts::PI;
 
 /// Lafortune et al. 1997, eq. 6: (Cx ux vx + Cy uy vy + Cz uz vz)ⁿ, times (n + 2)/(2π); Cx and Cz are the first two

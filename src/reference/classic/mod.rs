@@ -9,9 +9,9 @@ pub(super) mod phong;
 pub(super) mod ward;
 pub(super) mod ward_dur;
 
-use super::directions::{MIN_MU, Pair};
-use super::{Angles, Reference, definition};
-use crate::setting::Setting;
+use crate::model::parameters::Setting;
+use crate::reference::directions::{MIN_MU, Pair};
+use crate::reference::{Angles, Reference, definition};
 
 /// A lobe about the normal, as a function of the half vector.
 pub(crate) struct Classic {

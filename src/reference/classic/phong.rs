@@ -1,7 +1,7 @@
 //! Phong's lobe, normalised.
 
-use super::axis::{AboutAxis, Axis, exponent};
 use crate::reference::Reference;
+use crate::reference::classic::axis::{AboutAxis, Axis, exponent};
 use std::f64::consts::PI;
 
 /// Lafortune & Willems 1994: ks (n + 2)/(2π) cosⁿγ, γ from the mirror direction, at most π/2.

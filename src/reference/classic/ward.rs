@@ -1,7 +1,7 @@
 //! Ward's lobe as he published it.
 
-use super::Classic;
 use crate::reference::Reference;
+use crate::reference::classic::Classic;
 use std::f64::consts::PI;
 
 /// Ward 1992, the isotropic model: exp(−tan²δ/α²) / (4π α² √(cos θi cos θr)), δ the angle of the half vector from the

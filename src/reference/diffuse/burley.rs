@@ -1,8 +1,8 @@
 //! Disney's diffuse lobe.
 
+use crate::model::parameters::Setting;
 use crate::reference::directions::Pair;
 use crate::reference::{Angles, Reference, definition};
-use crate::setting::Setting;
 use std::f64::consts::FRAC_1_PI;
 
 /// Burley 2012, *Physically-Based Shading at Disney*, section 5.3:

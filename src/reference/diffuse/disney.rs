@@ -1,8 +1,8 @@
 //! What Disney's principled BRDF adds to its diffuse and specular lobes.
 
+use crate::model::parameters::Setting;
 use crate::reference::directions::Pair;
 use crate::reference::{Angles, Reference, definition};
-use crate::setting::Setting;
 use std::f64::consts::FRAC_1_PI;
 
 /// Burley 2012, *Physically-Based Shading at Disney*, after Hanrahan & Krueger 1993; `ss` of `disney.brdf`:

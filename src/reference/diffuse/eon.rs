@@ -1,9 +1,9 @@
 //! Oren and Nayar's model with what it loses.
 
-use super::{fujii, sines};
+use crate::model::parameters::Setting;
+use crate::reference::diffuse::{fujii, sines};
 use crate::reference::directions::Pair;
 use crate::reference::{Angles, Reference, definition};
-use crate::setting::Setting;
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI};
 
 /// Portsmouth, Kutz & Hill 2025, *EON: A Practical Energy-Preserving Rough Diffuse BRDF*, JCGT 14 (1),

@@ -1,8 +1,8 @@
 //! Disney's diffuse lobe, renormalised.
 
+use crate::model::parameters::Setting;
 use crate::reference::directions::Pair;
 use crate::reference::{Angles, Reference, definition};
-use crate::setting::Setting;
 use std::f64::consts::FRAC_1_PI;
 
 /// Lagarde & de Rousiers 2014, *Moving Frostbite to Physically Based Rendering*, the listing of

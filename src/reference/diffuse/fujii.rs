@@ -1,9 +1,9 @@
 //! Oren and Nayar's model without its ring.
 
-use super::sines;
+use crate::model::parameters::Setting;
+use crate::reference::diffuse::sines;
 use crate::reference::directions::Pair;
 use crate::reference::{Angles, Reference, definition};
-use crate::setting::Setting;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Fujii, *A tiny improvement of Oren-Nayar reflectance model* (mimosa-pudica.net), the second of its two pairs

@@ -1,8 +1,9 @@
 //! The diffuse lobe of glTF 2.0's metallic-roughness material.
 
+use crate::model::parameters::Setting;
 use crate::reference::directions::Pair;
-use crate::reference::{Angles, Reference, definition, fresnel::schlick};
-use crate::setting::Setting;
+use crate::reference::fresnel::schlick;
+use crate::reference::{Angles, Reference, definition};
 use std::f64::consts::FRAC_1_PI;
 
 /// Khronos 2021, *glTF 2.0 Specification*, Appendix B.3.5 (`fresnel_mix`): Lambert's lobe under the light

@@ -1,9 +1,10 @@
 //! The diffuse lobe of glTF 2.0's metallic-roughness material on a rough surface.
 
-use super::oren_nayar;
+use crate::model::parameters::Setting;
+use crate::reference::diffuse::oren_nayar;
 use crate::reference::directions::Pair;
-use crate::reference::{Angles, Reference, definition, fresnel::schlick};
-use crate::setting::Setting;
+use crate::reference::fresnel::schlick;
+use crate::reference::{Angles, Reference, definition};
 
 /// Khronos, *KHR_materials_diffuse_roughness* (draft): `diffuse_brdf` of *glTF 2.0*, Appendix B, of V-cavities with Lambertian
 /// facets whose slope angle has the standard deviation σ = π/2 · roughness; and what `fresnel_mix` leaves of it, 1 − Fc with

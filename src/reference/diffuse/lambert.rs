@@ -1,7 +1,7 @@
 //! The perfect diffuser.
 
+use crate::model::parameters::Setting;
 use crate::reference::{Angles, Reference, definition};
-use crate::setting::Setting;
 use std::f64::consts::FRAC_1_PI;
 
 /// Lambert 1760: A = 1/π.

@@ -1,9 +1,9 @@
 //! Lambertian V-cavities.
 
-use super::sines;
+use crate::model::parameters::Setting;
+use crate::reference::diffuse::sines;
 use crate::reference::directions::Pair;
 use crate::reference::{Angles, Reference, definition};
-use crate::setting::Setting;
 use std::f64::consts::FRAC_1_PI;
 
 /// Oren & Nayar 1994, *Generalization of Lambert's Reflectance Model*, the qualitative model, in which what

@@ -1,8 +1,8 @@
 //! Fresnel's equations for a conductor.
 
-use super::complex::Complex;
-use super::{Fresnel, mean};
-use crate::setting::Setting;
+use crate::model::parameters::Setting;
+use crate::reference::fresnel::complex::Complex;
+use crate::reference::fresnel::{Fresnel, mean};
 
 /// Born & Wolf 1999, section 14.2: as for a dielectric (section 1.5.2, eq. 21), with n = η + ik in place of the
 /// index and, by Snell's law, n cos θt = √(n² − sin²θ).

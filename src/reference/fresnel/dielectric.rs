@@ -1,7 +1,7 @@
 //! Fresnel's equations for a dielectric.
 
-use super::{Fresnel, mean};
-use crate::setting::Setting;
+use crate::model::parameters::Setting;
+use crate::reference::fresnel::{Fresnel, mean};
 
 /// Walter et al. 2007, eq. 22, for unpolarised light from a medium of index 1 onto one of η ≥ 1:
 /// F = ½ (g − c)²/(g + c)² (1 + (c (g + c) − 1)²/(c (g − c) + 1)²), g² = η² − 1 + c².

@@ -1,7 +1,7 @@
 //! Schlick's approximation with a metal's dip.
 
-use super::{Fresnel, schlick};
-use crate::setting::Setting;
+use crate::model::parameters::Setting;
+use crate::reference::fresnel::{Fresnel, schlick};
 
 /// Kutz, Hašan & Edmondson 2021: F = S − (1 − f82) S(c̄) M with Schlick's S, c̄ = 1/7 and
 /// M = c (1 − c)⁶ / (c̄ (1 − c̄)⁶), by what F0 and F90 weigh in S.

@@ -1,7 +1,7 @@
 //! Schlick's approximation with an exponent of choice.
 
-use super::Fresnel;
-use crate::setting::Setting;
+use crate::model::parameters::Setting;
+use crate::reference::fresnel::Fresnel;
 
 /// MaterialX's generalized_schlick_bsdf: F = mix(color0, color90, (1 − ωi·ωm)^exponent).
 pub(crate) struct GeneralizedSchlick;

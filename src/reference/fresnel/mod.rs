@@ -9,8 +9,8 @@ pub(super) mod none;
 pub(super) mod schlick;
 pub(super) mod thin_film;
 
-use super::quadrature::integrate;
-use crate::setting::Setting;
+use crate::model::parameters::Setting;
+use crate::reference::quadrature::integrate;
 
 /// A Fresnel term by what its weights multiply: F0 and F90 where it is Schlick's, or F itself and nothing.
 pub(crate) trait Fresnel: Sync {

@@ -1,7 +1,7 @@
 //! A reflectance that is the same at every angle.
 
-use super::Fresnel;
-use crate::setting::Setting;
+use crate::model::parameters::Setting;
+use crate::reference::fresnel::Fresnel;
 
 /// F = F0.
 pub(crate) struct Constant;

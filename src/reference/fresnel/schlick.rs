@@ -1,7 +1,7 @@
 //! Schlick's approximation of the Fresnel reflectance.
 
-use super::Fresnel;
-use crate::setting::Setting;
+use crate::model::parameters::Setting;
+use crate::reference::fresnel::Fresnel;
 
 /// Schlick 1994, eq. 15: F = F0 + (1 − F0) Fc with Fc = (1 − ωi·ωm)⁵.
 pub(crate) struct Schlick;

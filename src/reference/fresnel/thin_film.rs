@@ -1,7 +1,7 @@
 //! A thin film on a base, by the phases of what it reflects.
 
-use super::{Fresnel, mean};
-use crate::setting::Setting;
+use crate::model::parameters::Setting;
+use crate::reference::fresnel::{Fresnel, mean};
 use std::f64::consts::{PI, TAU};
 
 /// Belcour & Barla 2017, with the approximations of KHR_materials_iridescence ("Iridescence Fresnel", ratified 2022):

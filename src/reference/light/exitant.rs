@@ -1,9 +1,9 @@
 //! Exitant radiance and radiosity by their definitions.
 
-use super::albedo::Albedo;
-use super::peak_of;
-use super::source::{Cell, GAUSS, Source, towards};
 use crate::light::{Frame, Light};
+use crate::reference::light::albedo::Albedo;
+use crate::reference::light::peak_of;
+use crate::reference::light::source::{Cell, GAUSS, Source, towards};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 

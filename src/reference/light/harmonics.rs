@@ -1,7 +1,7 @@
 //! Spherical harmonics of a light by their definition: ∫ L Y dω, Y of associated Legendre polynomials.
 
-use super::source::{Cell, GAUSS, Source, towards};
 use crate::light::Light;
+use crate::reference::light::source::{Cell, GAUSS, Source, towards};
 use std::f64::consts::{PI, SQRT_2};
 
 /// R, G and B of nine coefficients, in the order l(l+1) + m.

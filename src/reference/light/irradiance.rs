@@ -1,7 +1,7 @@
 //! Irradiance by its definition: of a map along its meridians, of a disk and a sky in rings.
 
-use super::peak_of;
 use crate::light::{Disk, Environment, Light, Sky};
+use crate::reference::light::peak_of;
 use crate::reference::quadrature::integrate;
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};

@@ -1,6 +1,6 @@
 //! Cloth's visibility.
 
-use super::{Facet, Masking};
+use crate::reference::masking::{Facet, Masking};
 
 /// Neubelt & Pettineo 2013, after Ashikhmin & Premože 2007.
 pub(crate) struct AshikhminNeubelt;

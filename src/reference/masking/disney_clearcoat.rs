@@ -1,6 +1,6 @@
 //! Disney's masking of its clearcoat.
 
-use super::{Facet, Masking};
+use crate::reference::masking::{Facet, Masking};
 
 /// Burley 2012, as in BRDF Explorer's `disney.brdf`.
 pub(crate) struct DisneyClearcoat;

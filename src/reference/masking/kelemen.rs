@@ -1,6 +1,6 @@
 //! The quotient of Kelemen and Szirmay-Kalos.
 
-use super::{Facet, Masking};
+use crate::reference::masking::{Facet, Masking};
 
 /// Kelemen & Szirmay-Kalos 2001.
 pub(crate) struct Kelemen;

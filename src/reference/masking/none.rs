@@ -1,6 +1,6 @@
 //! No masking.
 
-use super::{Facet, Masking};
+use crate::reference::masking::{Facet, Masking};
 
 /// Torrance & Sparrow 1967, with a G of 1.
 pub(crate) struct Unmasked;

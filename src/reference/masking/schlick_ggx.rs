@@ -1,6 +1,6 @@
 //! Schlick's approximation of Smith's masking, with the two k that Karis gives.
 
-use super::{Facet, Masking};
+use crate::reference::masking::{Facet, Masking};
 
 /// Karis 2013, *Real Shading in Unreal Engine 4*: k = α/2 for image-based light.
 pub(crate) struct SchlickGgx;

@@ -1,6 +1,6 @@
 //! Smith masking and shadowing of microfacets at correlated heights.
 
-use super::{Facet, Masking};
+use crate::reference::masking::{Facet, Masking};
 
 /// Ross et al. 2005; Heitz 2014.
 pub(crate) struct SmithCorrelated;

@@ -1,6 +1,6 @@
 //! Smith masking and shadowing of microfacets, as if the one knew nothing of the other.
 
-use super::{Facet, Masking};
+use crate::reference::masking::{Facet, Masking};
 
 /// Smith 1967; Walter et al. 2007.
 pub(crate) struct SmithSeparable;

@@ -1,6 +1,6 @@
 //! V-shaped grooves.
 
-use super::{Facet, Masking};
+use crate::reference::masking::{Facet, Masking};
 use std::f64::consts::FRAC_PI_2;
 
 /// Cook & Torrance 1982.

@@ -1,7 +1,7 @@
 //! Beckmann: normally distributed slopes.
 
-use super::Ndf;
-use crate::setting::Setting;
+use crate::model::parameters::Setting;
+use crate::reference::ndf::Ndf;
 use libm::erf;
 use std::f64::consts::PI;
 

@@ -1,7 +1,8 @@
 //! Blinn–Phong: a power of the cosine.
 
-use super::{Ndf, beckmann::Beckmann};
-use crate::setting::Setting;
+use crate::model::parameters::Setting;
+use crate::reference::ndf::Ndf;
+use crate::reference::ndf::beckmann::Beckmann;
 use std::f64::consts::PI;
 
 /// Blinn 1977; Walter et al. 2007.

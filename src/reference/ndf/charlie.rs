@@ -1,7 +1,7 @@
 //! Charlie: fibres that stand on end.
 
-use super::Ndf;
-use crate::setting::Setting;
+use crate::model::parameters::Setting;
+use crate::reference::ndf::Ndf;
 use std::f64::consts::PI;
 
 /// Estevez & Kulla 2017, *Production Friendly Microfacet Sheen BRDF*; glTF's KHR_materials_sheen.

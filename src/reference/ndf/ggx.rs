@@ -1,7 +1,7 @@
 //! GGX: the normals of an ellipsoid.
 
-use super::Ndf;
-use crate::setting::Setting;
+use crate::model::parameters::Setting;
+use crate::reference::ndf::Ndf;
 use std::f64::consts::PI;
 
 /// Trowbridge & Reitz 1975; Walter et al. 2007.

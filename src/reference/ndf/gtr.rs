@@ -1,7 +1,8 @@
 //! GTR: Trowbridge and Reitz's normals with another exponent.
 
-use super::{Ndf, ggx::Ggx};
-use crate::setting::Setting;
+use crate::model::parameters::Setting;
+use crate::reference::ndf::Ndf;
+use crate::reference::ndf::ggx::Ggx;
 use std::f64::consts::PI;
 
 /// Burley 2012.

@@ -6,7 +6,7 @@ pub(super) mod charlie;
 pub(super) mod ggx;
 pub(super) mod gtr;
 
-use crate::setting::Setting;
+use crate::model::parameters::Setting;
 
 /// D(ωm) of a rough surface, isotropic.
 pub(crate) trait Ndf: Sync {

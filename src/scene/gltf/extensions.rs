@@ -1,10 +1,10 @@
 //! What the extensions of a material mean for its BRDF.
 
-use super::texels::Channel;
-use super::{Texture, texture};
-use crate::error::{Error, Result};
-use crate::models;
+use crate::base::error::{Error, Result};
+use crate::model;
 use crate::scene::Input;
+use crate::scene::gltf::texels::Channel;
+use crate::scene::gltf::{Texture, texture};
 use ::gltf::json::{self, Root, Value};
 
 /// What the extensions of a material say of its reflection, with defaults for those that it has not.
@@ -138,7 +138,7 @@ impl Extension<'_> {
     fn checked(&self, key: &str, value: &Value, [low, high]: [f64; 2]) -> Result<f64> {
         let number = value.as_f64().filter(|number| (low..=high).contains(number));
         number.ok_or_else(|| {
-            let value = super::printable(&value.to_string());
+            let value = crate::scene::gltf::printable(&value.to_string());
             let allowed =
                 if high < f64::MAX { format!("in [{low}, {high}]") } else { format!("from {low} on") };
             Error::input(format!(
@@ -286,7 +286,7 @@ impl Extension<'_> {
 impl Film {
     /// Why our model has no such film, if it has none.
     fn refused(&self) -> Result<Option<String>> {
-        let model = models::find("ggx")?.with_terms(None, Some("thin-film"))?;
+        let model = model::find("ggx")?.with_terms(None, Some("thin-film"))?;
         let mut parameters = model.defaults();
         for (name, value) in [("thickness", self.thickness), ("film_eta", self.eta)] {
             let parameter = model.parameters.iter().find(|parameter| parameter.name == name);
@@ -367,7 +367,10 @@ fn unmodelled(material: &json::Material) -> Vec<(String, &'static str)> {
         .filter_map(|(name, value)| match UNMODELLED.iter().find(|e| e.name == name) {
             Some(known) if known.is_idle(value) => None,
             Some(known) => Some((name.into(), known.effect)),
-            None => Some((super::printable(name), "if it changes the BRDF, the tables do not show it")),
+            None => Some((
+                crate::scene::gltf::printable(name),
+                "if it changes the BRDF, the tables do not show it",
+            )),
         })
         .collect()
 }

@@ -1,7 +1,7 @@
 //! The file: its JSON, and where the bytes of its images lie.
 
-use super::texels::Texels;
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
+use crate::scene::gltf::texels::Texels;
 use ::gltf::json::Root;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -43,7 +43,7 @@ impl GltfFile {
         })?;
         let version = &root.asset.version;
         if !version.starts_with("2.") {
-            let version = super::printable(version);
+            let version = crate::scene::gltf::printable(version);
             return Err(Error::input(format!(
                 "{}: asset.version is {version:?}; gonio reads glTF 2: export the file again as that",
                 path.display()
@@ -62,7 +62,7 @@ impl GltfFile {
         let image = self.root.images.get(index);
         let uri = image.and_then(|i| i.uri.as_deref()).filter(|uri| !uri.starts_with("data:"));
         let label = uri.or_else(|| image.and_then(|i| i.name.as_deref()));
-        label.map_or_else(|| format!("images[{index}]"), super::printable)
+        label.map_or_else(|| format!("images[{index}]"), crate::scene::gltf::printable)
     }
 
     /// The encoded bytes of an image.
@@ -100,7 +100,7 @@ impl GltfFile {
         if let Some((scheme, _)) = uri.split_once("://") {
             return Err(format!(
                 "it is on the network ({}://), and gonio reads local files only",
-                super::printable(scheme)
+                crate::scene::gltf::printable(scheme)
             ));
         }
         let decoded = percent_encoding::percent_decode_str(uri).decode_utf8();

@@ -1,7 +1,7 @@
 //! KTX2 that is no more than pixels: one picture of 8 or 16 bits a channel, linear, as it is or in Zstandard. What is
 //! compressed for GPUs (Basis Universal, BC, ASTC) is not decoded.
 
-use super::texels::MAX_SIDE;
+use crate::scene::gltf::texels::MAX_SIDE;
 use image::{DynamicImage, ImageBuffer};
 use ktx2::{Format, Reader, SupercompressionScheme};
 use std::io::Read;

@@ -13,9 +13,9 @@
 //! A sheen is Charlie's lobe upon that, which dims it by a factor. A thin film is a lobe of its own, in the mix that its factor says. A coat is a lobe upon all that, which it dims
 //! by a factor; where its strength w varies, 1 − w x = (1 − w) + w (1 − x) has formulas for both parts.
 
-use super::extensions::Extended;
-use crate::factor::{Albedo, Compensation, Factor};
-use crate::models;
+use crate::model;
+use crate::model::compensation::{Albedo, Compensation, Factor};
+use crate::scene::gltf::extensions::Extended;
 use crate::scene::{Distribution, Formula, Input, MaterialLobe, Weights};
 
 /// A material's quantities.
@@ -130,7 +130,7 @@ impl Layers<'_> {
     fn sheen(&self, parts: &mut Vec<Part>) {
         let (Some(sheen), Some(roughness)) = (&self.extended.sheen, &self.sheen_roughness) else { return };
         let model = with_fresnel("charlie", "none");
-        let Ok(charlie) = models::find(&model) else { return };
+        let Ok(charlie) = model::find(&model) else { return };
         let constant = roughness.is_constant().then(|| roughness.min());
         let of = Albedo { model: charlie, roughness: constant, parameters: charlie.defaults() };
         let most = sheen.color.range()[1];
@@ -205,6 +205,6 @@ fn below(parts: &mut Vec<Part>, [rest, strength]: [Formula; 2], factor: &Factor)
 
 /// The name of a distribution's lobe with another Fresnel term.
 fn with_fresnel(ndf: &str, fresnel: &str) -> String {
-    let model = models::find(ndf).and_then(|model| model.with_terms(None, Some(fresnel)));
+    let model = model::find(ndf).and_then(|model| model.with_terms(None, Some(fresnel)));
     model.map_or_else(|_| ndf.to_owned(), |model| model.name.to_owned())
 }

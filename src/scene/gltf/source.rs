@@ -1,11 +1,11 @@
 //! A material of the file: its numbers, and the ranges that its textures leave of them.
 
-use super::extensions::{Extended, Scaled};
-use super::file::GltfFile;
-use super::layers::Layers;
-use super::texels::{Channel, Texels};
-use super::{Texture, texture, unit};
-use crate::error::Result;
+use crate::base::error::Result;
+use crate::scene::gltf::extensions::{Extended, Scaled};
+use crate::scene::gltf::file::GltfFile;
+use crate::scene::gltf::layers::Layers;
+use crate::scene::gltf::texels::{Channel, Texels};
+use crate::scene::gltf::{Texture, texture, unit};
 use crate::scene::{Distribution, Input, LeftOut, Material, Scene};
 use ::gltf::json::{self, Root};
 use std::collections::BTreeMap;

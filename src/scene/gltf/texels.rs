@@ -1,7 +1,7 @@
 //! What a texture holds: roughness in G and metalness in B, or in other channels what extensions say, all of it linear.
 
-use super::ktx2;
 use crate::scene::Distribution;
+use crate::scene::gltf::ktx2;
 use image::{DynamicImage, ImageReader, Limits};
 use std::io::Cursor;
 

@@ -14,10 +14,10 @@
 //! Masking is of these α, as `disney.brdf` has it today; the notes of 2012 took it of α = (1/2 + roughness/2)². The
 //! clearcoat's is of α = 1/4.
 
-use super::{Item, channels};
-use crate::error::Result;
-use crate::factor::Compensation;
-use crate::models;
+use crate::base::error::Result;
+use crate::model;
+use crate::model::compensation::Compensation;
+use crate::scene::recipe::{Item, channels};
 use crate::scene::{Distribution, MaterialLobe, Weights};
 
 const KEYS: [&str; 11] = [
@@ -78,14 +78,14 @@ pub(super) fn lobes(item: Item) -> Result<Vec<MaterialLobe>> {
     let [x, y] =
         [roughness * roughness / aspect, roughness * roughness * aspect].map(|alpha| alpha.max(LEAST));
     let ndf = if x == y { "ggx" } else { "ggx-anisotropic" };
-    let model = models::find(ndf)?.with_terms(Some("smith-separable"), Some("schlick"))?;
+    let model = model::find(ndf)?.with_terms(Some("smith-separable"), Some("schlick"))?;
     // α = √(αx αy) = roughness².
     let specular = lobe(model.name, Some(Distribution::constant((x * y).powf(0.25))), [f0, plain]);
     let parameters = if x == y { Vec::new() } else { vec![("aspect".into(), [x / y; 3])] };
     lobes.push(MaterialLobe { parameters, ..specular });
 
     if clearcoat > 0.0 {
-        let model = models::find("gtr")?.with_terms(Some("disney-clearcoat"), Some("schlick"))?;
+        let model = model::find("gtr")?.with_terms(Some("disney-clearcoat"), Some("schlick"))?;
         let rough = Some(Distribution::constant(mix(0.1, LEAST, gloss).sqrt()));
         let coat = lobe(model.name, rough, [0.04, 1.0].map(|f| [0.25 * clearcoat * f; 3]));
         lobes.push(MaterialLobe { parameters: vec![("gamma".into(), [1.0; 3])], ..coat });

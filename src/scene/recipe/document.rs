@@ -1,7 +1,7 @@
 //! A TOML document that knows its lines: every value is read with its place, so that every error can
 //! name the file, the line, the key and the words that are valid there.
 
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
 use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};

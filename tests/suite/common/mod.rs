@@ -3,14 +3,17 @@
 #[cfg(feature = "files")]
 pub mod readers;
 
-use gonio::axis::{Axis, Mapping, Positions, Variable};
-use gonio::bake::{Evaluator, Stages, Unobserved};
+use gonio::backend::gpu::{DeviceChoice, INSTALL};
+use gonio::bake::{Evaluator, Unobserved};
+use gonio::base::precision::{Precision, STORED_F32, VALUE_F32};
+use gonio::base::timings::Timings;
 use gonio::check::{Check, reference};
-use gonio::gpu::{DeviceChoice, INSTALL};
-use gonio::models::{self, Model};
-use gonio::plan::{Precision, STORED_F32, TablePlan, VALUE_F32};
-use gonio::quantity::{Quantity, RHO_DH, RHO_HH};
+use gonio::model;
+use gonio::model::Model;
+use gonio::plan::TablePlan;
 use gonio::table::Table;
+use gonio::table::axis::{Axis, Mapping, Positions, Variable};
+use gonio::table::quantity::{Quantity, RHO_DH, RHO_HH};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::OnceLock;
@@ -32,7 +35,7 @@ pub fn evaluators() -> [&'static Evaluator; 2] {
 }
 
 pub fn model(name: &str) -> &'static Model {
-    models::find(name).unwrap()
+    model::find(name).unwrap()
 }
 
 pub fn axis(variable: Variable, count: usize) -> Axis {
@@ -68,7 +71,7 @@ pub fn basis(
 }
 
 pub fn bake(evaluator: &Evaluator, plan: &TablePlan, check: Check) -> Table {
-    evaluator.bake(plan, check, &mut Stages::default(), &Unobserved).unwrap()
+    evaluator.bake(plan, check, &mut Timings::default(), &Unobserved).unwrap()
 }
 
 /// A table that is tried at many tolerances, and its texels by the reference, which integrates once.

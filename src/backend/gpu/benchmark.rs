@@ -1,0 +1,130 @@
+//! How long the device takes, by submitting and waiting: timestamps lie on some software drivers.
+
+use crate::backend::gpu::baker::{Baker, EVALUATIONS_PER_DISPATCH, Layout, Step, Tile};
+use crate::backend::gpu::device::Device;
+use crate::base::error::{Error, Result};
+use crate::base::precision::Precision;
+use crate::plan::TablePlan;
+use crate::shader::Kernel;
+use crate::table::Values;
+use std::time::Instant;
+
+/// A table that is ready to be baked again and again: pipelines are compiled and buffers touched.
+pub(crate) struct Warm<'a> {
+    device: &'a Device,
+    layout: Layout,
+    tiles: Vec<Tile>,
+    /// Seconds of the host before the device has anything to do: nodes, factors, upload.
+    pub prepare: f64,
+}
+
+/// What the device can do at most.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rates {
+    /// Bytes written in a second.
+    pub bytes: f64,
+    /// Multiplications and additions in a second.
+    pub operations: f64,
+}
+
+impl Warm<'_> {
+    /// Bakes once, and returns the seconds from the first submission to the end of the last.
+    pub fn run(&self) -> Result<f64> {
+        let steps: Vec<_> = self.tiles.iter().flat_map(|tile| &tile.steps).collect();
+        let start = Instant::now();
+        self.device.submit_all(&steps)?;
+        Ok(start.elapsed().as_secs_f64())
+    }
+
+    /// The values of the last run.
+    pub fn values(&self) -> Result<Values> {
+        let mut values = self.layout.values(self.layout.units);
+        for tile in &self.tiles {
+            self.device.read_back(tile, &self.layout, &mut values)?;
+        }
+        Ok(values)
+    }
+}
+
+impl Device {
+    /// Makes a table ready, and bakes it once.
+    pub(crate) fn warm(&self, table: &TablePlan, precision: Precision) -> Result<Warm<'_>> {
+        let prepare = || -> Result<(Layout, Vec<Tile>)> {
+            let layout = Layout::new(table, precision);
+            let stages = self.baker.stages(table, precision, || self.known_turns())?;
+            let tiles = layout.tiles(&stages).into_iter();
+            let tiles = tiles.map(|units| self.baker.tile(&layout, &stages, units)).collect::<Result<_>>()?;
+            Ok((layout, tiles))
+        };
+        drop(prepare()?); // compiles
+        let start = Instant::now();
+        let (layout, tiles) = prepare()?;
+        let warm = Warm { device: self, layout, tiles, prepare: start.elapsed().as_secs_f64() };
+        warm.run()?;
+        Ok(warm)
+    }
+
+    /// As few submissions as the limit on a dispatch allows.
+    fn submit_all(&self, steps: &[&Step]) -> Result<()> {
+        let Baker { device, queue, .. } = &self.baker;
+        let mut rest = steps;
+        while !rest.is_empty() {
+            let mut evaluations = 0;
+            let fits = rest.iter().take_while(|step| {
+                evaluations += step.evaluations;
+                evaluations <= EVALUATIONS_PER_DISPATCH as u64
+            });
+            let (now, later) = rest.split_at(fits.count().max(1));
+            let mut encoder = device.create_command_encoder(&Default::default());
+            now.iter().for_each(|step| step.encode(&mut encoder));
+            queue.submit([encoder.finish()]);
+            self.wait()?;
+            rest = later;
+        }
+        Ok(())
+    }
+
+    /// Measures what the device can do at most, by kernels that do nothing else.
+    pub(crate) fn rates(&self) -> Result<Rates> {
+        // 32 MiB, as four vectors of 16 bytes an invocation.
+        const FILL_GROUPS: u32 = 2048;
+        const FILL_BYTES: usize = FILL_GROUPS as usize * 256 * 4 * 16;
+        // 64 invocations of 256 turns of eight chains of four, each a product and a sum.
+        const GROUPS: u32 = 512;
+        const OPERATIONS: f64 = GROUPS as f64 * 64.0 * 256.0 * 8.0 * 4.0 * 2.0;
+        Ok(Rates {
+            bytes: FILL_BYTES as f64 / self.probe(Kernel::Fill, FILL_BYTES, FILL_GROUPS)?,
+            operations: OPERATIONS / self.probe(Kernel::MultiplyAdd, GROUPS as usize * 64 * 16, GROUPS)?,
+        })
+    }
+
+    /// The shortest of several runs, s.
+    fn probe(&self, kernel: Kernel, bytes: usize, groups: u32) -> Result<f64> {
+        const RUNS: usize = 8;
+        let Baker { device, queue, .. } = &self.baker;
+        let pipeline = self.baker.pipeline(kernel, None, 0, Precision::F32)?;
+        let buffer = self.baker.output(bytes);
+        let bind_group = self.baker.bind(&pipeline, [buffer.as_entire_binding()]);
+        let mut least = f64::INFINITY;
+        for run in 0..=RUNS {
+            let start = Instant::now();
+            let mut encoder = device.create_command_encoder(&Default::default());
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(&pipeline);
+            pass.set_bind_group(0, &bind_group, &[]);
+            pass.dispatch_workgroups(groups, 1, 1);
+            drop(pass);
+            queue.submit([encoder.finish()]);
+            self.wait()?;
+            // The first run touches the buffer.
+            if run > 0 {
+                least = least.min(start.elapsed().as_secs_f64());
+            }
+        }
+        if least > 0.0 {
+            Ok(least)
+        } else {
+            Err(Error::Device(format!("{}: its clock stands still", self.name())))
+        }
+    }
+}

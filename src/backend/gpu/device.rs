@@ -1,0 +1,247 @@
+//! Finding a device, and saying which one was taken and why.
+
+use crate::backend::gpu::baker::Baker;
+use crate::backend::gpu::driver_probe::Canary;
+use crate::base::error::{Error, Result};
+use std::fmt;
+use std::str::FromStr;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+/// What the user asks for.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum DeviceChoice {
+    /// The best GPU, else software Vulkan, else the CPU path.
+    #[default]
+    Auto,
+    /// The CPU path, in f64.
+    Cpu,
+    /// The adapter whose name contains this, whatever its case.
+    Named(String),
+}
+
+impl FromStr for DeviceChoice {
+    type Err = std::convert::Infallible;
+
+    fn from_str(s: &str) -> Result<Self, Self::Err> {
+        Ok(match s {
+            "auto" => Self::Auto,
+            "cpu" => Self::Cpu,
+            name => Self::Named(name.into()),
+        })
+    }
+}
+
+/// An adapter, and what it is.
+#[derive(Debug, Clone)]
+pub struct Adapter {
+    /// What wgpu says of it.
+    pub info: wgpu::AdapterInfo,
+    adapter: wgpu::Adapter,
+}
+
+/// A device of our own.
+pub struct Device {
+    pub(crate) baker: Baker,
+    /// What wgpu says of its adapter.
+    pub info: wgpu::AdapterInfo,
+    #[cfg(feature = "files")]
+    adapter: Adapter,
+    fault: Arc<Mutex<Option<String>>>,
+    pub(crate) canary: OnceLock<Canary>,
+}
+
+/// All adapters that could bake, the best first.
+pub fn adapters() -> Vec<Adapter> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends: wgpu::Backends::PRIMARY,
+        // No dispatch here is indirect: a device need not compile what would look after those.
+        flags: wgpu::InstanceFlags::default() - wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL,
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    });
+    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
+    let mut adapters: Vec<_> =
+        adapters.into_iter().map(|adapter| Adapter { info: adapter.get_info(), adapter }).collect();
+    adapters.sort_by_key(Adapter::rank);
+    adapters
+}
+
+impl Adapter {
+    /// The best first.
+    fn rank(&self) -> u8 {
+        match self.info.device_type {
+            wgpu::DeviceType::DiscreteGpu => 0,
+            wgpu::DeviceType::IntegratedGpu => 1,
+            wgpu::DeviceType::VirtualGpu => 2,
+            wgpu::DeviceType::Other => 3,
+            wgpu::DeviceType::Cpu => 4,
+        }
+    }
+
+    /// What kind of device it is, for people: `GPU` or `software Vulkan`.
+    pub fn kind(&self) -> &'static str {
+        kind(&self.info)
+    }
+
+    /// The driver and its version.
+    pub fn driver(&self) -> String {
+        driver(&self.info)
+    }
+
+    /// Opens the device, with the limits of every WebGPU device and larger buffers where it has them.
+    pub fn open(&self) -> Result<Device> {
+        let offered = self.adapter.limits();
+        let limits = wgpu::Limits {
+            max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
+            max_buffer_size: offered.max_buffer_size,
+            ..wgpu::Limits::default()
+        };
+        // What stores by words of 64 bits is faster on the CPU, and on no GPU.
+        let wide = match self.info.device_type {
+            wgpu::DeviceType::Cpu => wgpu::Features::SHADER_INT64,
+            _ => wgpu::Features::empty(),
+        };
+        let request = self.adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("gonio"),
+            required_features: self.adapter.features() & (wgpu::Features::SHADER_F64 | wide),
+            required_limits: limits,
+            ..Default::default()
+        });
+        let (device, queue) =
+            pollster::block_on(request).map_err(|e| Error::Device(format!("{}: {e}", self.info.name)))?;
+        let fault = Arc::new(Mutex::new(None));
+        let first = fault.clone();
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            first.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error.to_string());
+        }));
+        let lost = fault.clone();
+        device.set_device_lost_callback(move |reason, why| {
+            let what = format!("the device is lost ({reason:?}) {why}");
+            lost.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(what);
+        });
+        Ok(Device {
+            baker: Baker::new(&device, &queue),
+            info: self.info.clone(),
+            #[cfg(feature = "files")]
+            adapter: self.clone(),
+            fault,
+            canary: OnceLock::new(),
+        })
+    }
+}
+
+impl Device {
+    /// The device that a choice means; `None` for the CPU path, with the reason in a line.
+    ///
+    /// # Errors
+    /// When a named adapter is not there or cannot be opened.
+    pub fn choose(choice: &DeviceChoice) -> Result<(Option<Self>, String)> {
+        match choice {
+            DeviceChoice::Cpu => Ok((None, "CPU path in f64, as asked".into())),
+            DeviceChoice::Auto => {
+                let mut failures = Vec::new();
+                for adapter in adapters() {
+                    match adapter.open() {
+                        Ok(device) => {
+                            let why = match adapter.kind() {
+                                "GPU" => "the best GPU here",
+                                _ => "no GPU here, software Vulkan is next",
+                            };
+                            let line = format!("{device}: {why}");
+                            return Ok((Some(device), line));
+                        }
+                        Err(e) => failures.push(e.to_string()),
+                    }
+                }
+                let why = if failures.is_empty() {
+                    "no GPU and no Vulkan driver here".into()
+                } else {
+                    failures.join("; ")
+                };
+                Ok((None, format!("fell back to the CPU path in f64: {why}")))
+            }
+            DeviceChoice::Named(name) => {
+                let adapters = adapters();
+                let wanted = name.to_lowercase();
+                // Every name holds "".
+                let fits = |a: &&Adapter| !wanted.is_empty() && a.info.name.to_lowercase().contains(&wanted);
+                let found = adapters.iter().find(fits);
+                let adapter = found.ok_or_else(|| {
+                    let names: Vec<_> = adapters.iter().map(|a| format!("\"{}\"", a.info.name)).collect();
+                    Error::Device(if names.is_empty() {
+                        format!("no adapter is named \"{name}\": there is none at all. {INSTALL} The CPU path, --device cpu, needs none")
+                    } else {
+                        format!(
+                            "no adapter is named \"{name}\"; there are {}, auto and cpu",
+                            names.join(", ")
+                        )
+                    })
+                })?;
+                let device = adapter.open()?;
+                let line = format!("{device}: its name holds \"{name}\"");
+                Ok((Some(device), line))
+            }
+        }
+    }
+
+    /// A new device on the same adapter, after this one was lost.
+    #[cfg(feature = "files")]
+    pub(crate) fn reopen(&self) -> Result<Self> {
+        self.adapter.open()
+    }
+
+    /// The adapter's name.
+    pub fn name(&self) -> &str {
+        &self.info.name
+    }
+
+    /// `GPU` or `software Vulkan`.
+    pub fn kind(&self) -> &'static str {
+        kind(&self.info)
+    }
+
+    /// The driver and its version.
+    pub fn driver(&self) -> String {
+        driver(&self.info)
+    }
+
+    /// Whether its kernels can run in f64.
+    pub fn has_f64(&self) -> bool {
+        self.baker.device.features().contains(wgpu::Features::SHADER_F64)
+    }
+
+    /// The baker on this device.
+    pub fn baker(&self) -> &Baker {
+        &self.baker
+    }
+
+    /// The device and its queue.
+    pub fn wgpu(&self) -> (&wgpu::Device, &wgpu::Queue) {
+        (&self.baker.device, &self.baker.queue)
+    }
+
+    /// The first error that the device reported, if it did.
+    pub(crate) fn fault(&self) -> Result<()> {
+        match self.fault.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            Some(fault) => Err(Error::Device(format!("{}: {fault}", self.name()))),
+            None => Ok(()),
+        }
+    }
+}
+
+/// How to get a software device.
+pub const INSTALL: &str = "Install a Vulkan driver; on Debian, software Vulkan is `apt-get install \
+                           mesa-vulkan-drivers libvulkan1`.";
+
+impl fmt::Display for Device {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ({}, {})", self.name(), self.kind(), self.driver())
+    }
+}
+
+fn driver(info: &wgpu::AdapterInfo) -> String {
+    format!("{} {}", info.driver, info.driver_info).trim().to_string()
+}
+
+fn kind(info: &wgpu::AdapterInfo) -> &'static str {
+    if info.device_type == wgpu::DeviceType::Cpu { "software Vulkan" } else { "GPU" }
+}

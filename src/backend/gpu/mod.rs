@@ -1,0 +1,21 @@
+//! The device side: composing the shaders that a plan needs, and recording their work.
+//!
+//! [`Baker`] works on a device that the caller owns and records into the caller's encoder; the
+//! headless bake is the same recording, split into submissions and read back.
+
+pub(crate) mod baker;
+mod benchmark;
+pub(crate) mod device;
+pub(crate) mod dispatch;
+pub(crate) mod driver_probe;
+pub(crate) mod loop_limit;
+mod points;
+pub(crate) mod readback;
+mod texture;
+
+pub use baker::{Baker, Prepared, Recorded};
+pub(crate) use benchmark::{Rates, Warm};
+pub use device::{Adapter, Device, DeviceChoice, INSTALL, adapters};
+pub use driver_probe::{ASKED_TURNS, Canary};
+pub(crate) use points::Points;
+pub use texture::TextureFormat;

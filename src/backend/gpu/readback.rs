@@ -1,0 +1,227 @@
+//! The headless bake: the same recording, in short submissions, read back while the next tile is
+//! computed.
+
+use crate::backend::gpu::baker::{Baker, EVALUATIONS_PER_DISPATCH, Layout, Tile};
+use crate::backend::gpu::device::Device;
+use crate::backend::gpu::dispatch::Dispatches;
+use crate::base::error::{Error, Result};
+use crate::base::precision::Precision;
+use crate::base::timings::Timings;
+use crate::plan::TablePlan;
+use crate::table::Values;
+use std::ops::Range;
+use std::sync::mpsc::{self, Receiver};
+use std::time::Instant;
+
+/// What the device does in one submission, after which a bake can be stopped: as much as one dispatch may.
+const EVALUATIONS_PER_SUBMISSION: u64 = EVALUATIONS_PER_DISPATCH as u64;
+
+/// Where a tile is computed and where the host reads it. Two of them take turns: the first touch of a
+/// buffer costs more than to compute what it holds.
+struct Slot {
+    output: wgpu::Buffer,
+    staging: wgpu::Buffer,
+    /// The tile on its way, if there is one, and the share of the table's work that nobody waited for yet.
+    flight: Option<(Flight, f64)>,
+}
+
+/// A result on its way to the host.
+pub(crate) struct Flight {
+    last: wgpu::SubmissionIndex,
+    mapped: Receiver<Result<(), wgpu::BufferAsyncError>>,
+    bytes: u64,
+}
+
+impl Device {
+    /// The values of a table, row-major, channels last. `tick` is called as work is done, with its
+    /// share of the table, and stops it by an error.
+    pub(crate) fn evaluate(
+        &self,
+        table: &TablePlan,
+        precision: Precision,
+        times: &mut Timings,
+        tick: &(impl Fn(f64) -> Result<()> + Sync),
+    ) -> Result<Values> {
+        let layout = Layout::new(table, precision);
+        let mut values = layout.values(layout.units);
+        self.tiles(table, &layout, None, times, tick, &mut values, &mut |_, _| Ok(()))?;
+        Ok(values)
+    }
+
+    /// The values of some rows of a table of values at a time, in f32 (a row is all azimuths of an α and a
+    /// pair): `sink` gets each of `tiles` in order, while the device computes the next.
+    #[cfg(feature = "files")]
+    pub(crate) fn stream(
+        &self,
+        table: &TablePlan,
+        tiles: &[Range<usize>],
+        times: &mut Timings,
+        sink: &mut dyn FnMut(usize, &[f32]) -> Result<()>,
+    ) -> Result<()> {
+        let layout = Layout::new(table, Precision::F32);
+        let mut values = layout.values(0);
+        self.tiles(table, &layout, Some(tiles), times, &|_| Ok(()), &mut values, &mut |k, values| {
+            sink(k, &values.to_f32())?;
+            values.clear();
+            Ok(())
+        })
+    }
+
+    /// Appends the values of tile after tile to `values`; `sink` looks at them after each, and may take them.
+    #[allow(clippy::too_many_arguments)]
+    fn tiles(
+        &self,
+        table: &TablePlan,
+        layout: &Layout,
+        tiles: Option<&[Range<usize>]>,
+        times: &mut Timings,
+        tick: &impl Fn(f64) -> Result<()>,
+        values: &mut Values,
+        sink: &mut dyn FnMut(usize, &mut Values) -> Result<()>,
+    ) -> Result<()> {
+        let start = Instant::now();
+        let composed = self.baker.compose_seconds();
+        let stages = self.baker.stages(table, layout.precision, || self.known_turns())?;
+        let tiles = tiles.map_or_else(|| layout.tiles(&stages), <[_]>::to_vec);
+        let largest = layout.bytes(tiles.iter().map(Range::len).max().unwrap_or(0));
+        let mut slots: Vec<_> = tiles.iter().take(2).map(|_| self.slot(largest)).collect();
+        times.compile += start.elapsed().as_secs_f64();
+
+        for k in 0..=tiles.len() {
+            if let Some(units) = tiles.get(k) {
+                let share = units.len() as f64 / layout.units as f64;
+                self.launch(&mut slots[k % 2], layout, &stages, units, share, times, tick)?;
+            }
+            let landing = k.checked_sub(1).and_then(|last| Some((last, slots.get_mut(last % 2)?)));
+            if let Some((last, Slot { staging, flight, .. })) = landing
+                && let Some((flight, share)) = flight.take()
+            {
+                let start = Instant::now();
+                self.arrive(&flight)?;
+                times.dispatch += start.elapsed().as_secs_f64();
+                let start = Instant::now();
+                self.land(staging, flight, &mut |bytes| layout.append(bytes, values))?;
+                times.readback += start.elapsed().as_secs_f64();
+                sink(last, values)?;
+                tick(share)?;
+            }
+        }
+        let composing = self.baker.compose_seconds() - composed;
+        times.compose += composing;
+        times.compile -= composing;
+        Ok(())
+    }
+
+    /// Starts a tile; waits for all its submissions but the last.
+    #[allow(clippy::too_many_arguments)]
+    fn launch(
+        &self,
+        slot: &mut Slot,
+        layout: &Layout,
+        stages: &[Dispatches],
+        units: &Range<usize>,
+        share: f64,
+        times: &mut Timings,
+        tick: &impl Fn(f64) -> Result<()>,
+    ) -> Result<()> {
+        let Baker { device, queue, .. } = &self.baker;
+        let start = Instant::now();
+        let steps = self.baker.fill(&slot.output, stages, units.clone())?;
+        times.compile += start.elapsed().as_secs_f64();
+        let start = Instant::now();
+        let all: u64 = steps.iter().map(|step| step.evaluations).sum();
+        let part = |evaluations: u64| share * evaluations as f64 / all.max(1) as f64;
+        let mut encoder = device.create_command_encoder(&Default::default());
+        let (mut recorded, mut left) = (0, share);
+        for step in &steps {
+            if recorded > 0 && recorded + step.evaluations > EVALUATIONS_PER_SUBMISSION {
+                queue.submit([encoder.finish()]);
+                self.wait()?;
+                tick(part(recorded))?;
+                left -= part(recorded);
+                recorded = 0;
+                encoder = device.create_command_encoder(&Default::default());
+            }
+            step.encode(&mut encoder);
+            recorded += step.evaluations;
+        }
+        let bytes = layout.bytes(units.len()) as u64;
+        slot.flight = Some((self.send(encoder, &slot.output, &slot.staging, bytes), left));
+        times.dispatch += start.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// Reads a tile that was computed, and appends its values.
+    pub(crate) fn read_back(&self, tile: &Tile, layout: &Layout, values: &mut Values) -> Result<()> {
+        let staging = self.staging(tile.buffer.size());
+        let encoder = self.baker.device.create_command_encoder(&Default::default());
+        let flight = self.send(encoder, &tile.buffer, &staging, tile.buffer.size());
+        self.arrive(&flight)?;
+        self.land(&staging, flight, &mut |bytes| layout.append(bytes, values))
+    }
+
+    /// Submits what is recorded, and after it the copy of a result to where the host reads it.
+    pub(crate) fn send(
+        &self,
+        mut encoder: wgpu::CommandEncoder,
+        output: &wgpu::Buffer,
+        staging: &wgpu::Buffer,
+        bytes: u64,
+    ) -> Flight {
+        encoder.copy_buffer_to_buffer(output, 0, staging, 0, bytes);
+        let last = self.baker.queue.submit([encoder.finish()]);
+        let (sender, mapped) = mpsc::channel();
+        staging.map_async(wgpu::MapMode::Read, ..bytes, move |result| {
+            // Without a receiver nobody wants the tile any more.
+            let _ = sender.send(result);
+        });
+        Flight { last, mapped, bytes }
+    }
+
+    /// Waits until a result is there.
+    pub(crate) fn arrive(&self, flight: &Flight) -> Result<()> {
+        self.poll(wgpu::PollType::Wait { submission_index: Some(flight.last.clone()), timeout: None })
+    }
+
+    /// Shows the bytes of a result that is there.
+    pub(crate) fn land(
+        &self,
+        staging: &wgpu::Buffer,
+        flight: Flight,
+        take: &mut dyn FnMut(&[u8]),
+    ) -> Result<()> {
+        let Flight { mapped, bytes, .. } = flight;
+        let lost = |why: String| Error::Device(format!("{}: cannot read results back: {why}", self.name()));
+        mapped.recv().map_err(|e| lost(e.to_string()))?.map_err(|e| lost(e.to_string()))?;
+        let view = staging.get_mapped_range(..bytes).map_err(|e| lost(e.to_string()))?;
+        take(&view);
+        drop(view);
+        staging.unmap();
+        Ok(())
+    }
+
+    /// Waits for all that was submitted.
+    pub(crate) fn wait(&self) -> Result<()> {
+        self.poll(wgpu::PollType::wait_indefinitely())
+    }
+
+    fn poll(&self, what: wgpu::PollType) -> Result<()> {
+        let polled = self.baker.device.poll(what);
+        self.fault()?;
+        polled.map_err(|e| Error::Device(format!("{}: {e}", self.name())))?;
+        Ok(())
+    }
+
+    fn slot(&self, bytes: usize) -> Slot {
+        Slot { output: self.baker.output(bytes), staging: self.staging(bytes as u64), flight: None }
+    }
+
+    pub(crate) fn staging(&self, bytes: u64) -> wgpu::Buffer {
+        self.baker.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: bytes,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        })
+    }
+}

@@ -1,0 +1,11 @@
+//! What everything else stands on: errors, precision, angles, half-angle terms, quadrature.
+
+pub mod angles;
+pub mod error;
+pub mod half_angle;
+pub mod precision;
+pub mod quadrature;
+pub mod radiometry;
+pub(crate) mod sequence;
+pub mod timings;
+pub(crate) mod tolerance;

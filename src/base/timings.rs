@@ -1,0 +1,28 @@
+//! Where the time of a bake goes.
+
+use serde::Serialize;
+
+/// Where the time went, in seconds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Timings {
+    /// Reading the scene and its textures, and planning.
+    pub scene: f64,
+    /// Finding and opening the device.
+    pub device: f64,
+    /// Composing and validating shaders.
+    pub compose: f64,
+    /// Making factors and nodes, compiling pipelines, uploading.
+    pub compile: f64,
+    /// Running the kernels, or the CPU path. Software drivers compile a kernel when it first runs, unless they find it
+    /// in a cache: that is most of a cold start.
+    pub dispatch: f64,
+    /// Running them again by a finer rule, to certify the first.
+    pub certify: f64,
+    /// Copying results back.
+    pub readback: f64,
+    /// Comparing with the reference: in a set of tables while the device computes the next one, so that all stages
+    /// together may be longer than the bake.
+    pub check: f64,
+    /// Writing files.
+    pub write: f64,
+}

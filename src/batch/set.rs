@@ -1,0 +1,303 @@
+//! Bakes everything that a plan asks for into a folder, with its manifest, all or nothing.
+
+use crate::bake::{Evaluator, Observer, within_tolerance};
+use crate::base::error::{Error, Result};
+use crate::base::timings::Timings;
+use crate::batch::stream;
+use crate::batch::stream::{Progress, Streaming};
+use crate::check::Check;
+use crate::io;
+use crate::io::{Files, Format, Provenance, TableEntry, TableSet, Tiles};
+use crate::plan::TablePlan;
+use crate::scene::LeftOut;
+use crate::scene::planner::{Basis, MaterialPlan, Plan};
+use crate::table::Table;
+use serde::Serialize;
+use std::collections::BTreeSet;
+use std::panic::resume_unwind;
+use std::path::Path;
+use std::thread::{self, ScopedJoinHandle};
+use std::time::Instant;
+
+/// What to write, and how much of it to check.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// The files of each table.
+    pub formats: Vec<Format>,
+    /// How many texels of each table to compare with the reference.
+    pub check: Check,
+    /// Which tables are written piece by piece.
+    pub streaming: Streaming,
+}
+
+/// What `manifest.json` says.
+#[derive(Debug, Serialize)]
+struct Manifest<'a> {
+    schema: u32,
+    gonio: Version,
+    scene: SceneFile,
+    device: DeviceEntry,
+    tolerance: f64,
+    requirements: Requirements<'a>,
+    tables: Vec<TableEntry<'a>>,
+    stages: Timings,
+}
+
+#[derive(Debug, Serialize)]
+struct Version {
+    version: &'static str,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct SceneFile {
+    file: String,
+    sha256: String,
+}
+
+#[derive(Debug, Serialize)]
+struct DeviceEntry {
+    kind: &'static str,
+    name: String,
+    driver: String,
+}
+
+#[derive(Debug, Serialize)]
+struct Requirements<'a> {
+    bases: &'a [Basis],
+    left_out: &'a [LeftOut],
+    warnings: Vec<String>,
+    materials: &'a [MaterialPlan],
+}
+
+/// What became of a plan.
+#[derive(Debug)]
+pub struct Baked {
+    /// The tables, in the plan's order. Those that were streamed come without their values.
+    pub tables: Vec<Table>,
+    /// Their files.
+    pub files: Vec<Files>,
+    /// The plan's warnings, and what the tables themselves give reason to say.
+    pub warnings: Vec<String>,
+    /// Tiles of streamed tables, and how many of them an earlier bake that was cut off had finished.
+    pub tiles: Progress,
+    /// Where the time went.
+    pub stages: Timings,
+    /// The manifest as it was written.
+    pub manifest: serde_json::Value,
+}
+
+/// Bakes `plan`, which came from the file `scene`, into `dir`.
+///
+/// # Errors
+/// When a table misses its tolerance, the device fails or a file cannot be written: what was in the
+/// folder before is then still there, whole.
+pub fn bake_set(
+    plan: &Plan,
+    scene: &Path,
+    evaluator: &Evaluator,
+    dir: &Path,
+    options: &Options,
+    mut stages: Timings,
+    observer: &dyn Observer,
+) -> Result<Baked> {
+    let scene = SceneFile { file: scene.display().to_string(), sha256: io::sha256(scene)? };
+    let device = DeviceEntry::new(evaluator);
+    let provenance = Provenance::from([
+        ("scene".into(), scene.file.clone()),
+        ("scene_sha256".into(), scene.sha256.clone()),
+        ("device".into(), format!("{} ({})", device.name, device.driver)),
+    ]);
+    let set = TableSet::create(dir)?;
+    let mut finished = Finished {
+        set,
+        options,
+        provenance: &provenance,
+        tables: Vec::new(),
+        written: Vec::new(),
+        misses: Vec::new(),
+    };
+    let streams = |table: &&TablePlan| options.streaming.takes(table);
+    let key =
+        |table: &TablePlan| stream::key(table, &scene.sha256, &provenance["device"], &options.streaming);
+    let keys: BTreeSet<_> = plan.tables.iter().filter(streams).map(key).collect();
+    let mut progress = Progress::default();
+    // A device that is lost is opened once more.
+    let mut spare = None;
+    // While the device computes a table, the cores check the one before and write the one before that.
+    thread::scope(|scope| -> Result<()> {
+        let mut checking = None;
+        for table in &plan.tables {
+            if streams(&table) {
+                finished.settle(&mut checking, &mut stages)?;
+                let tiles = finished.set.tiles(&keys, &key(table))?;
+                let streamed = stream::bake(
+                    evaluator,
+                    &mut spare,
+                    table,
+                    &tiles,
+                    options,
+                    &mut progress,
+                    &mut stages,
+                    observer,
+                );
+                let (streamed, preview) = streamed.inspect_err(|error| {
+                    if matches!(error, Error::Promise(_)) {
+                        let _ = finished.set.discard_tiles(); // the same tiles would break the promise again
+                    }
+                })?;
+                finished.take_streamed(table, streamed, &tiles, &preview, &mut stages, observer)?;
+                continue;
+            }
+            let compute =
+                |now: &Evaluator, stages: &mut Timings| now.compute(table, options.check, stages, observer);
+            let computed = match compute(spare.as_ref().unwrap_or(evaluator), &mut stages) {
+                Err(Error::Device(_)) if spare.is_none() => {
+                    compute(spare.insert(evaluator.reopen()?), &mut stages)
+                }
+                result => result,
+            };
+            // What is wrong with the table before is said before what is wrong with this one.
+            let before = checking.take().map(|check: Checking| check.end(&mut stages)).transpose()?;
+            let computed = computed?;
+            observer.begin(&format!("checking {}", table.name));
+            let check = move || {
+                let start = Instant::now();
+                let checked = computed.check(table, options.check, &|share| observer.advance(share));
+                (checked, start.elapsed().as_secs_f64())
+            };
+            checking = Some(Checking { table, thread: scope.spawn(check) });
+            if let Some((table, checked)) = before {
+                finished.take(table, checked, &mut stages)?;
+            }
+        }
+        finished.settle(&mut checking, &mut stages)
+    })?;
+    let Finished { set, tables, written, mut misses, .. } = finished;
+    if !misses.is_empty() {
+        set.discard_tiles()?;
+        misses.push(format!("{}: left as it was", dir.display()));
+        return Err(Error::Promise(misses.join("\n")));
+    }
+    let warnings: Vec<_> = plan.warnings.iter().cloned().chain(energy_warnings(plan, &tables)).collect();
+    let manifest = serde_json::to_value(Manifest {
+        schema: 1,
+        gonio: Version { version: env!("CARGO_PKG_VERSION") },
+        scene,
+        device,
+        tolerance: plan.tolerance,
+        requirements: Requirements {
+            bases: &plan.bases,
+            left_out: &plan.left_out,
+            warnings: warnings.clone(),
+            materials: &plan.materials,
+        },
+        tables: tables.iter().zip(&written).map(|(t, files)| TableEntry::new(t, files.clone())).collect(),
+        stages,
+    })
+    .map_err(|e| Error::Internal(format!("manifest: {e}")))?;
+    set.commit(&manifest)?;
+    Ok(Baked { tables, files: written, warnings, tiles: progress, stages, manifest })
+}
+
+/// A table whose values are compared with the reference by a thread of its own.
+struct Checking<'scope, 'plan> {
+    table: &'plan TablePlan,
+    thread: ScopedJoinHandle<'scope, (Result<Table>, f64)>,
+}
+
+impl<'plan> Checking<'_, 'plan> {
+    /// Waits for it.
+    fn end(self, stages: &mut Timings) -> Result<(&'plan TablePlan, Table)> {
+        let (checked, seconds) = self.thread.join().unwrap_or_else(|panic| resume_unwind(panic));
+        stages.check += seconds;
+        Ok((self.table, checked?))
+    }
+}
+
+/// The tables so far, in the plan's order.
+struct Finished<'a> {
+    set: TableSet,
+    options: &'a Options,
+    provenance: &'a Provenance,
+    tables: Vec<Table>,
+    written: Vec<Files>,
+    /// What tables missed; nothing is written any more when there is one.
+    misses: Vec<String>,
+}
+
+impl Finished<'_> {
+    /// Takes the table that is being checked, if there is one.
+    fn settle(&mut self, checking: &mut Option<Checking>, stages: &mut Timings) -> Result<()> {
+        let Some(check) = checking.take() else { return Ok(()) };
+        let (plan, table) = check.end(stages)?;
+        self.take(plan, table, stages)
+    }
+
+    fn take(&mut self, plan: &TablePlan, table: Table, stages: &mut Timings) -> Result<()> {
+        if self.is_met(plan, &table) {
+            let start = Instant::now();
+            self.written.push(self.set.write(&table, &self.options.formats, self.provenance)?);
+            stages.write += start.elapsed().as_secs_f64();
+        }
+        self.tables.push(table);
+        Ok(())
+    }
+
+    fn take_streamed(
+        &mut self,
+        plan: &TablePlan,
+        table: Table,
+        tiles: &Tiles,
+        preview: &Table,
+        stages: &mut Timings,
+        observer: &dyn Observer,
+    ) -> Result<()> {
+        if self.is_met(plan, &table) {
+            observer.begin(&format!("writing {}", table.name));
+            let start = Instant::now();
+            let (formats, tick) = (&self.options.formats, &mut |share| observer.advance(share));
+            let written = self.set.write_streamed(&table, tiles, preview, formats, self.provenance, tick)?;
+            self.written.push(written);
+            stages.write += start.elapsed().as_secs_f64();
+        }
+        self.tables.push(table);
+        Ok(())
+    }
+
+    /// Whether this table and all before it meet their tolerances.
+    fn is_met(&mut self, plan: &TablePlan, table: &Table) -> bool {
+        self.misses.extend(within_tolerance(plan, table).err().map(|miss| miss.to_string()));
+        self.misses.is_empty()
+    }
+}
+
+/// A material whose format lets it reflect more than it receives says so.
+fn energy_warnings(plan: &Plan, tables: &[Table]) -> Vec<String> {
+    let gains =
+        |table: &&Table| table.quantity == "rho_dh" && plan.materials.iter().any(|m| m.name == table.subject);
+    let largest = |table: &Table| table.values.iter().fold(0.0, f64::max);
+    tables
+        .iter()
+        .filter(gains)
+        .filter(|table| largest(table) > 1.0 + plan.tolerance)
+        .map(|table| {
+            format!(
+                "{}: reflects up to {:.4} of what it receives; its lobes are added without conserving energy, as \
+                 glTF 2.0 has it",
+                table.subject,
+                largest(table)
+            )
+        })
+        .collect()
+}
+
+impl DeviceEntry {
+    fn new(evaluator: &Evaluator) -> Self {
+        match evaluator {
+            Evaluator::Device(device) => {
+                Self { kind: device.kind(), name: device.name().into(), driver: device.driver() }
+            }
+            Evaluator::Cpu => Self { kind: "CPU", name: "CPU path".into(), driver: "f64".into() },
+        }
+    }
+}

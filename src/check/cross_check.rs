@@ -1,0 +1,311 @@
+//! The cross-check: a table's texels against the f64 reference.
+
+use crate::base::angles;
+use crate::base::angles::delta_phi;
+use crate::base::error::Result;
+use crate::base::sequence::stride;
+use crate::model::lobe::Lobe;
+use crate::plan::TablePlan;
+use crate::reference::{Angles, Product};
+use crate::table::axis::{Axis, Variable};
+use crate::table::quantity::Evaluation;
+use crate::table::{ErrorKind, TableError, Values, indices};
+use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+
+/// How many texels of a table to compare.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Check {
+    /// The corners and a low-discrepancy set: at least so many, or all if there are fewer; 0: none.
+    Sample(usize),
+    /// Every one.
+    All,
+}
+
+impl Default for Check {
+    fn default() -> Self {
+        Self::Sample(256)
+    }
+}
+
+impl std::str::FromStr for Check {
+    type Err = String;
+
+    fn from_str(s: &str) -> Result<Self, Self::Err> {
+        match s {
+            "all" => Ok(Self::All),
+            _ => s.parse().map(Self::Sample).map_err(|_| format!("\"{s}\" is neither a count nor all")),
+        }
+    }
+}
+
+/// Relative errors of values are taken of max(f, this), in sr⁻¹: below it f32 runs out of exponent.
+pub const VALUE_FLOOR: f64 = 1e-30;
+
+/// The same of a sum of lobes, some of which may lose their digits earlier.
+pub(crate) fn value_floor(lobes: &[Lobe]) -> f64 {
+    lobes.iter().filter_map(|lobe| lobe.model.faint()).fold(VALUE_FLOOR, f64::max)
+}
+
+/// Compares `values` with the reference. A NaN anywhere makes the largest error infinite.
+///
+/// `tick` is called between comparisons and stops them by an error.
+pub fn cross_check(
+    table: &TablePlan,
+    values: &Values,
+    check: Check,
+    estimate: Option<f64>,
+    tick: &(impl Fn(f64) -> Result<()> + Sync),
+) -> Result<TableError> {
+    let mut comparison = Comparison::new(table, check, estimate);
+    comparison.add(0..table.texels(), &|k| values.get(k), tick)?;
+    Ok(comparison.finish())
+}
+
+/// A comparison that sees a table piece by piece, in order: the same texels, the same sums and so the
+/// same error as of the whole.
+pub(crate) struct Comparison<'a> {
+    table: &'a TablePlan,
+    /// The texels to compare, sorted; `None`: all of them.
+    sample: Option<Vec<usize>>,
+    tally: Tally,
+}
+
+impl<'a> Comparison<'a> {
+    pub fn new(table: &'a TablePlan, check: Check, estimate: Option<f64>) -> Self {
+        let known = table.lobes.iter().all(|lobe| lobe.model.reference.is_some());
+        let sample = match check {
+            _ if !known => Some(Vec::new()),
+            Check::All => None,
+            Check::Sample(n) => Some(sample(&table.shape(), n)),
+        };
+        let kind = table.quantity.error;
+        let floor = (kind == ErrorKind::Relative).then(|| value_floor(&table.lobes));
+        let tally = Tally::new(TableError::unmeasured(kind, floor, estimate));
+        Self { table, sample, tally }
+    }
+
+    /// Compares the texels `piece`, whose values `value` gives, from 0. The next piece must begin where it
+    /// ends.
+    pub fn add(
+        &mut self,
+        piece: Range<usize>,
+        value: &(impl Fn(usize) -> f64 + Sync),
+        tick: &(impl Fn(f64) -> Result<()> + Sync),
+    ) -> Result<()> {
+        let table = self.table;
+        let channels = table.channels.len();
+        let (texels, all): (Vec<_>, _) = match &self.sample {
+            None => (piece.clone().collect(), table.texels()),
+            Some(sample) => {
+                let at = |texel| sample.partition_point(|&t| t < texel);
+                (sample[at(piece.start)..at(piece.end)].to_vec(), sample.len())
+            }
+        };
+        let share = 1.0 / all as f64;
+        let found = texels
+            .par_iter()
+            .map(|&texel| {
+                let truth = reference(table, texel);
+                let values = ((texel - piece.start) * channels..).map(value);
+                let found: Vec<_> =
+                    truth.into_iter().zip(values).map(|(truth, value)| (value, truth)).collect();
+                tick(share)?;
+                Ok((texel, found))
+            })
+            .collect::<Result<Vec<_>>>()?;
+        found.into_iter().for_each(|(texel, found)| self.tally.add(&table.axes, texel, found));
+        Ok(())
+    }
+
+    /// The error of all that was added.
+    pub fn finish(self) -> TableError {
+        self.tally.finish()
+    }
+}
+
+/// Differences from the truth as they are found: the largest, where that is, and their mean square.
+pub(crate) struct Tally {
+    error: TableError,
+    squares: f64,
+    compared: usize,
+}
+
+impl Tally {
+    /// None yet; `error` says of which kind they are.
+    pub fn new(error: TableError) -> Self {
+        Self { error, squares: 0.0, compared: 0 }
+    }
+
+    /// Adds a texel: for each channel its value and the truth. A NaN is an infinite difference.
+    pub fn add(&mut self, axes: &[Axis], texel: usize, channels: impl IntoIterator<Item = (f64, f64)>) {
+        let Self { error, squares, compared } = self;
+        error.texels_checked += 1;
+        for (channel, (value, truth)) in channels.into_iter().enumerate() {
+            let difference = (value - truth).abs();
+            let difference = error.floor.map_or(difference, |floor| difference / truth.abs().max(floor));
+            let difference = if difference.is_nan() { f64::INFINITY } else { difference };
+            *squares += difference * difference;
+            *compared += 1;
+            if error.measured_max.is_none_or(|max| difference >= max) {
+                error.measured_max = Some(difference);
+                let shape: Vec<_> = axes.iter().map(Axis::len).collect();
+                let coordinates = axes.iter().zip(indices(&shape, texel));
+                error.worst =
+                    coordinates.map(|(axis, k)| (axis.variable.name().into(), axis.values[k])).collect();
+                error.worst.insert("channel".into(), channel as f64);
+                error.worst.insert("value".into(), value);
+                error.worst.insert("reference".into(), truth);
+            }
+        }
+    }
+
+    /// The error of all that was added.
+    pub fn finish(mut self) -> TableError {
+        if self.compared > 0 {
+            self.error.measured_rms = Some((self.squares / self.compared as f64).sqrt());
+        }
+        self.error
+    }
+}
+
+/// The reference's channels of one texel. NaN where the reference has no value.
+pub fn reference(table: &TablePlan, texel: usize) -> Vec<f64> {
+    let at: BTreeMap<_, _> = table
+        .axes
+        .iter()
+        .zip(indices(&table.shape(), texel))
+        .map(|(axis, k)| (axis.variable, axis.values[k]))
+        .collect();
+    let mut channels = vec![0.0; table.channels.len()];
+    for lobe in &table.lobes {
+        let [a, b] = reference_lobe(table.quantity.evaluation, lobe, &at);
+        for (channel, [weight_a, weight_b]) in channels.iter_mut().zip(&lobe.weights) {
+            *channel += weight_a * a + weight_b * b;
+        }
+    }
+    channels
+}
+
+/// ρ_dh of a lobe by the reference at a direction of incidence, before its weights.
+pub(crate) fn reference_albedo(lobe: &Lobe, theta_i: f64, phi_i: f64) -> [f64; 2] {
+    let at = BTreeMap::from([(Variable::ThetaI, theta_i), (Variable::PhiI, phi_i)]);
+    reference_lobe(Evaluation::Directional, lobe, &at)
+}
+
+/// The reference's angles of a pair of directions.
+pub(crate) fn reference_angles(pair: &angles::Angles) -> Angles {
+    let angles::Angles { theta_i, phi_i, theta_e, .. } = *pair;
+    Angles { theta_i, theta_e, delta_phi: pair.delta_phi(), phi_i }
+}
+
+/// f of a lobe by the reference at a pair of directions, before its weights; NaN where it has none.
+pub(crate) fn reference_of(lobe: &Lobe, angles: &angles::Angles) -> [f64; 2] {
+    let Some(reference) = lobe.model.reference else { return [f64::NAN; 2] };
+    let f = reference.brdf(&reference_angles(angles), &lobe.setting_at(None)).unwrap_or([f64::NAN; 2]);
+    if lobe.factors.is_empty() {
+        return f;
+    }
+    let factor =
+        Product::new(lobe, None).map(|product| product.at(angles.theta_i.cos(), angles.theta_e.cos()));
+    f.map(|f| f * factor.unwrap_or(f64::NAN))
+}
+
+fn reference_lobe(evaluation: Evaluation, lobe: &Lobe, at: &BTreeMap<Variable, f64>) -> [f64; 2] {
+    let Some(reference) = lobe.model.reference else { return [f64::NAN; 2] };
+    let get = |variable| at.get(&variable).copied();
+    let setting = &lobe.setting_at(get(Variable::Roughness));
+    let theta_i = get(Variable::ThetaI).unwrap_or(0.0);
+    let phi_i = get(Variable::PhiI).unwrap_or(0.0);
+    let value = || {
+        let delta_phi = match get(Variable::PhiE) {
+            Some(phi_e) => delta_phi(phi_i, phi_e),
+            None => get(Variable::DeltaPhi).unwrap_or(0.0),
+        };
+        let theta_e = get(Variable::ThetaE).unwrap_or(0.0);
+        let f = reference.brdf(&Angles { theta_i, theta_e, delta_phi, phi_i }, setting);
+        (f.unwrap_or([f64::NAN; 2]), theta_e)
+    };
+    if lobe.factors.is_empty() {
+        return match evaluation {
+            Evaluation::Value => value().0,
+            Evaluation::Directional => {
+                reference.rho_dh_at(get(Variable::Mu).unwrap_or(theta_i.cos()), phi_i, setting)
+            }
+            Evaluation::Hemispherical => reference.rho_hh(setting),
+        };
+    }
+    let Some(product) = Product::new(lobe, get(Variable::Roughness)) else { return [f64::NAN; 2] };
+    match evaluation {
+        Evaluation::Value => {
+            let (f, theta_e) = value();
+            f.map(|f| f * product.at(theta_i.cos(), theta_e.cos()))
+        }
+        // Of the split sum it is ωe that is fixed.
+        Evaluation::Directional => match get(Variable::Mu) {
+            Some(mu) => product.rho_dh(reference, mu, setting, true),
+            None => product.rho_dh(reference, theta_i.cos(), setting, false),
+        },
+        Evaluation::Hemispherical => product.rho_hh(reference, setting),
+    }
+}
+
+/// At least `n` different texels: every corner of the axes, where extremes meet, and steps of the
+/// golden section through the rest.
+pub(crate) fn sample(shape: &[usize], n: usize) -> Vec<usize> {
+    let texels: usize = shape.iter().product();
+    if n == 0 {
+        return Vec::new();
+    }
+    if n >= texels {
+        return (0..texels).collect();
+    }
+    let mut chosen = BTreeSet::new();
+    for corner in 0..1usize << shape.len() {
+        let at = |(k, &count): (usize, &usize)| if corner >> k & 1 == 1 { count - 1 } else { 0 };
+        chosen.insert(
+            shape.iter().enumerate().map(|axis| (at(axis), axis.1)).fold(0, |flat, (k, n)| flat * n + k),
+        );
+    }
+    let stride = stride(texels);
+    let mut texel = 0;
+    while chosen.len() < n {
+        texel = (texel + stride) % texels;
+        chosen.insert(texel);
+    }
+    chosen.into_iter().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model;
+    use crate::table::quantity;
+
+    #[test]
+    fn a_sample_has_the_corners_and_no_repeats() {
+        let chosen = sample(&[7, 9, 11], 100);
+        assert_eq!(chosen.len(), 100);
+        assert!([0, 10, 7 * 9 * 11 - 1, 6 * 9 * 11].iter().all(|corner| chosen.contains(corner)));
+        assert_eq!(sample(&[2, 3], 256), (0..6).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn the_comparer_sees_one_bad_texel_and_nan() {
+        let axes = vec![Axis::natural(Variable::ThetaI, 40).unwrap()];
+        let lambert = model::find("lambert").unwrap();
+        let table = TablePlan::basis("t", &quantity::RHO_DH, lambert, None, axes).unwrap();
+        let mut values = vec![1.0; 40];
+        let check = |values: &[f32]| {
+            cross_check(&table, &values.to_vec().into(), Check::All, None, &|_| Ok(())).unwrap()
+        };
+        assert!(check(&values).measured_max.unwrap() < 1e-9);
+        values[17] = 1.001;
+        let error = check(&values);
+        assert!((error.measured_max.unwrap() - 1e-3).abs() < 1e-6);
+        assert_eq!(error.worst["theta_i"], table.axes[0].values[17]);
+        values[17] = f32::NAN;
+        assert_eq!(check(&values).measured_max, Some(f64::INFINITY));
+    }
+}

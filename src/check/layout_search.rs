@@ -1,0 +1,360 @@
+//! The storage optimiser: the mapping, positions, range, size and format with the fewest bytes that
+//! meet a tolerance when an engine samples the table bilinearly.
+//!
+//! Weights of a look-up are ≥ 0 and sum to 1, so with I_x and I_y the interpolations along each axis,
+//! |I_x I_y f − f| ≤ max |I_x f − f| + max |I_y f − f|: errors of single axes, which are cheap to tabulate
+//! and fall as 1/n², rank the choices. The best few are then searched by bisection on the error that
+//! the rounded table really has, and the winner is measured between all of its samples.
+
+use crate::base::error::{Error, Result};
+use crate::check::bilinear::{evaluate, fine, largest, locate, look_up, promised};
+use crate::plan::{TablePlan, UNORM_RULE};
+use crate::table::axis::{Axis, Mapping, Positions, Variable};
+use crate::table::report::{Choice, Layout};
+use crate::table::storage::Storage;
+use crate::table::{ErrorKind, Values, indices};
+use std::cell::RefCell;
+
+/// The table with axes and storage chosen for its tolerance. `auto` are the axes to choose: those of the
+/// table count for their range alone.
+///
+/// # Errors
+/// When no size up to 512 meets the tolerance.
+pub(crate) fn optimise(table: TablePlan, auto: &[Variable], storage: Option<Storage>) -> Result<TablePlan> {
+    let search = Search::new(&table, auto, storage);
+    let mut found: Vec<Found> =
+        search.shortlist().iter().filter_map(|options| search.best(options)).collect();
+    found.sort_by_key(|found| found.bytes);
+    let mut found = found.into_iter();
+    let chosen = found.next().ok_or_else(|| {
+        Error::input(format!(
+            "table \"{}\": no size of its auto axes up to {MOST} meets {:e} bilinearly; allow more, narrow the range, or \
+             give its other axis more samples",
+            table.name, table.tolerance
+        ))
+    })?;
+    let usual: usize =
+        table.axes.iter().map(|axis| if auto.contains(&axis.variable) { 128 } else { axis.len() }).product();
+    let choice = Choice {
+        runner_up: found.next().map(|next| next.layout()),
+        usual_bytes: usual * table.channels.len() * Storage::F16.bytes(),
+        chosen: chosen.layout(),
+    };
+    Ok(TablePlan { axes: chosen.axes, storage: chosen.storage, bilinear: Some(choice), ..table })
+}
+
+/// The longest axis that is tried.
+const MOST: usize = 512;
+/// The pairs of options that are searched for real.
+const SHORTLIST: usize = 3;
+/// Points along each axis at which candidates are tested.
+const TESTS: usize = 65;
+/// Sizes at which the errors of single axes are tabulated.
+const SIZES: [usize; 3] = [24, 64, 160];
+/// What the search leaves for what lies between its test points.
+const MARGIN: f64 = 0.98;
+
+/// The tolerance of the search's own integrals.
+fn rough(table: &TablePlan) -> f64 {
+    (0.01 * table.tolerance).min(UNORM_RULE)
+}
+
+/// An axis but for its size.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct AxisOption {
+    variable: Variable,
+    mapping: Mapping,
+    positions: Positions,
+    range: [f64; 2],
+}
+
+impl AxisOption {
+    fn axis(&self, n: usize) -> Option<Axis> {
+        Axis::new(self.variable, n, self.range, self.positions, self.mapping).ok()
+    }
+}
+
+struct Found {
+    axes: Vec<Axis>,
+    storage: Storage,
+    bytes: usize,
+    error: f64,
+}
+
+impl Found {
+    fn layout(&self) -> Layout {
+        let axes = self.axes.iter().map(|axis| {
+            let mapping = if axis.mapping == Mapping::Sqrt { "sqrt" } else { "linear" };
+            let positions = match axis.positions {
+                Positions::Nodes => "nodes",
+                Positions::Centers => "centers",
+                Positions::Values => "values",
+            };
+            let [a, b] = axis.range;
+            format!("{} {mapping} {positions} [{a:.4}, {b:.4}] × {}", axis.variable.name(), axis.len())
+        });
+        Layout { axes: axes.collect(), storage: self.storage, bytes: self.bytes, error: self.error }
+    }
+}
+
+/// An option with its single-axis errors at [`SIZES`].
+#[derive(Clone, Copy)]
+struct Curve {
+    option: AxisOption,
+    errors: [f64; SIZES.len()],
+}
+
+impl Curve {
+    /// The error at `n` samples: a power law through the two nearest sizes.
+    fn at(&self, n: usize) -> f64 {
+        let k = usize::from(n > SIZES[1]);
+        let [x0, x1] = [SIZES[k], SIZES[k + 1]].map(|n| (n as f64).ln());
+        let [y0, y1] = [self.errors[k], self.errors[k + 1]].map(|e| e.max(1e-12).ln());
+        (y0 + (y1 - y0) * ((n as f64).ln() - x0) / (x1 - x0)).exp()
+    }
+}
+
+struct Search<'a> {
+    table: &'a TablePlan,
+    /// The axes to choose, by their place in the table.
+    auto: Vec<usize>,
+    storages: Vec<Storage>,
+    /// Test coordinates of all axes, in the promise's domain, and the truth there.
+    tests: Vec<Vec<f64>>,
+    truth: Vec<f64>,
+    curves: RefCell<Vec<Vec<Curve>>>,
+}
+
+impl<'a> Search<'a> {
+    fn new(table: &'a TablePlan, auto: &[Variable], storage: Option<Storage>) -> Self {
+        let auto = (0..table.axes.len()).filter(|&k| auto.contains(&table.axes[k].variable)).collect();
+        let tests: Vec<_> = table
+            .axes
+            .iter()
+            .map(|axis| {
+                let [a, b] = promised(axis.variable, axis.range);
+                let a = a.min(b);
+                // Denser where ρ turns: at the lower end.
+                let tests = |n: usize| (0..n).map(move |k| a + (b - a) * (k as f64 / (n - 1) as f64).powi(2));
+                if a < b { tests(TESTS).collect() } else { vec![b] }
+            })
+            .collect();
+        let truth = evaluate(&fine(table, tests.clone(), rough(table)));
+        // Two bytes before four; of two, unorm16, which is finer than halves where it fits. Four can only
+        // help where the rounding of two is felt.
+        let fits = |&value: &f64| (0.0..=1.0).contains(&Storage::Unorm16.round(value));
+        let narrow = if truth.iter().all(fits) { Storage::Unorm16 } else { Storage::F16 };
+        let felt = narrow.rounding(ErrorKind::Absolute) > 0.05 * table.tolerance;
+        let storages = match storage {
+            Some(storage) => vec![storage],
+            None if felt => vec![narrow, Storage::F32],
+            None => vec![narrow],
+        };
+        let search = Self { table, auto, storages, tests, truth, curves: RefCell::default() };
+        let curves = search.auto.iter().map(|&k| search.curves_of(k)).collect();
+        search.curves.replace(curves);
+        search
+    }
+
+    fn curves_of(&self, k: usize) -> Vec<Curve> {
+        let Axis { variable, range, .. } = self.table.axes[k];
+        let promise = promised(variable, range);
+        let mut ranges = vec![range];
+        if promise != range && promise[0] < promise[1] {
+            ranges.push(promise);
+        }
+        let mut curves = Vec::new();
+        for range in ranges {
+            for mapping in [Mapping::Linear, Mapping::Sqrt] {
+                for positions in [Positions::Nodes, Positions::Centers] {
+                    let option = AxisOption { variable, mapping, positions, range };
+                    let errors = SIZES.map(|n| self.single_axis_error(k, option, n));
+                    curves.push(Curve { option, errors });
+                }
+            }
+        }
+        curves
+    }
+
+    /// The largest error of interpolating along axis `k` alone.
+    fn single_axis_error(&self, k: usize, option: AxisOption, n: usize) -> f64 {
+        let Some(axis) = option.axis(n) else { return f64::INFINITY };
+        let mut coordinates = self.tests.clone();
+        // Every other test will do for the ranking.
+        for (j, tests) in coordinates.iter_mut().enumerate() {
+            if j == k {
+                tests.clone_from(&axis.values);
+            } else {
+                *tests = tests.iter().copied().step_by(COARSE).collect();
+            }
+        }
+        let shape: Vec<_> = coordinates.iter().map(Vec::len).collect();
+        let channels = self.table.channels.len();
+        let values = evaluate(&fine(self.table, coordinates, rough(self.table)));
+        let all: Vec<_> = self.tests.iter().map(Vec::len).collect();
+        let mut largest = 0.0;
+        for (texel, truth) in self.truth.chunks(channels).enumerate() {
+            let mut at = indices(&all, texel);
+            if at.iter().enumerate().any(|(j, i)| j != k && i % COARSE != 0) {
+                continue;
+            }
+            let (below, share) = locate(&axis, self.tests[k][at[k]]);
+            at.iter_mut().enumerate().filter(|(j, _)| *j != k).for_each(|(_, i)| *i /= COARSE);
+            let mut read = |i: usize| {
+                at[k] = i;
+                at.iter().zip(&shape).fold(0, |flat, (i, n)| flat * n + i) * channels
+            };
+            let (low, high) = (read(below), read((below + 1).min(n - 1)));
+            for (c, truth) in truth.iter().enumerate() {
+                let value = (1.0 - share) * values[low + c] + share * values[high + c];
+                largest = f64::max(largest, (value - truth).abs());
+            }
+        }
+        largest
+    }
+
+    /// The choices of options, for each axis one, that the bound makes the smallest.
+    fn shortlist(&self) -> Vec<Vec<Curve>> {
+        let curves = self.curves.borrow();
+        let mut ranked: Vec<(usize, Vec<Curve>)> = match &curves[..] {
+            [only] => only.iter().filter_map(|&c| Some((self.least(&[c])?.0, vec![c]))).collect(),
+            [first, second] => {
+                let pairs = first.iter().flat_map(|&a| second.iter().map(move |&b| [a, b]));
+                pairs.filter_map(|pair| Some((self.least(&pair)?.0, pair.to_vec()))).collect()
+            }
+            _ => Vec::new(),
+        };
+        ranked.sort_by_key(|(texels, _)| *texels);
+        ranked.into_iter().take(SHORTLIST).map(|(_, options)| options).collect()
+    }
+
+    /// The fewest texels by the bound, and the size of the first axis there.
+    fn least(&self, curves: &[Curve]) -> Option<(usize, usize)> {
+        let room = MARGIN * self.table.tolerance;
+        let smallest = |curve: &Curve, room: f64| (2..=2 * MOST).find(|&n| curve.at(n) <= room);
+        match curves {
+            [only] => smallest(only, room).map(|n| (n, n)),
+            [a, b] => (2..=2 * MOST)
+                .step_by(2)
+                .filter(|&n| a.at(n) < room)
+                .filter_map(|n| Some((n * smallest(b, room - a.at(n))?, n)))
+                .min(),
+            _ => None,
+        }
+    }
+
+    /// The smallest table of these options that meets the tolerance.
+    fn best(&self, curves: &[Curve]) -> Option<Found> {
+        let (texels, first) = self.least(curves)?;
+        // Formats in the order of their bytes: the first that any size meets the tolerance in.
+        self.storages.iter().find_map(|&storage| {
+            if storage.rounding(ErrorKind::Absolute) > 0.5 * self.table.tolerance {
+                return None;
+            }
+            let found = match curves {
+                [only] => self.shortest(storage, &[], only.option, texels),
+                [a, b] => {
+                    let sizes = (0..=4).map(|k| (first as f64 * (0.8 + 0.1 * f64::from(k))) as usize);
+                    let found = sizes.filter_map(|n| {
+                        let axis = a.option.axis(n.clamp(2, MOST))?;
+                        self.shortest(storage, &[axis], b.option, texels / n.max(1) + 2)
+                    });
+                    found.min_by_key(|found| found.bytes)
+                }
+                _ => None,
+            };
+            found.and_then(|found| self.confirmed(found))
+        })
+    }
+
+    /// The shortest last axis, about as long as the bound has it, with which the table meets the tolerance.
+    fn shortest(&self, storage: Storage, first: &[Axis], last: AxisOption, bound: usize) -> Option<Found> {
+        let found = |n: usize| {
+            let mut axes = self.table.axes.clone();
+            let chosen = first.iter().cloned().chain(last.axis(n));
+            self.auto.iter().zip(chosen).for_each(|(&k, axis)| axes[k] = axis);
+            self.found(axes, storage)
+        };
+        let room = MARGIN * self.table.tolerance;
+        let (mut low, mut high) = ((bound / 2).max(1), (bound * 5 / 4 + 2).min(MOST));
+        let mut best = loop {
+            match found(high).filter(|found| found.error <= room) {
+                Some(found) => break found,
+                None if high >= (2 * bound).min(MOST) => return None,
+                None => (low, high) = (high, (high * 5 / 4).min(MOST)),
+            }
+        };
+        while high - low > 1 {
+            let middle = (low + high) / 2;
+            match found(middle).filter(|found| found.error <= room) {
+                Some(found) => (best, high) = (found, middle),
+                None => low = middle,
+            }
+        }
+        Some(best)
+    }
+
+    /// A table with these axes, its error at the test points; `None` where its values do not fit.
+    fn found(&self, axes: Vec<Axis>, storage: Storage) -> Option<Found> {
+        let nodes = axes.iter().map(|axis| axis.values.clone()).collect();
+        let plan = fine(self.table, nodes, rough(self.table));
+        let channels = self.table.channels.len();
+        let values = Values::F64(evaluate(&plan));
+        let values = storage.store(values, ErrorKind::Absolute).ok()?.values;
+        let shape: Vec<_> = self.tests.iter().map(Vec::len).collect();
+        let mut error = 0.0;
+        for (texel, truth) in self.truth.chunks(channels).enumerate() {
+            let at: Vec<_> =
+                self.tests.iter().zip(indices(&shape, texel)).map(|(tests, k)| tests[k]).collect();
+            let read = look_up(&axes, &values, channels, &at);
+            error = read.iter().zip(truth).map(|(a, b)| (a - b).abs()).fold(error, f64::max);
+        }
+        Some(Found { bytes: values.len() * storage.bytes(), axes, storage, error })
+    }
+
+    /// The table, longer by a little if need be, as it is measured between its own samples too.
+    fn confirmed(&self, mut found: Found) -> Option<Found> {
+        const TRIES: usize = 6;
+        for _ in 0..TRIES {
+            let plan = TablePlan { axes: found.axes.clone(), ..self.table.clone() };
+            let nodes = found.axes.iter().map(|axis| axis.values.clone()).collect();
+            let nodes = fine(&plan, nodes, rough(&plan));
+            let values = found.storage.store(Values::F64(evaluate(&nodes)), ErrorKind::Absolute).ok()?.values;
+            found.error = largest(&plan, &values);
+            if found.error <= CONFIRMED * self.table.tolerance {
+                return Some(found);
+            }
+            let mut axes = found.axes;
+            for &k in &self.auto {
+                let Axis { variable, mapping, positions, range, .. } = axes[k];
+                let longer = AxisOption { variable, mapping, positions, range }.axis(axes[k].len() + 1)?;
+                axes[k] = longer;
+            }
+            found = self.found(axes, found.storage)?;
+        }
+        None
+    }
+}
+
+/// Of the test points along the other axis, those that rank options.
+const COARSE: usize = 8;
+/// The device's own error, a tenth of the tolerance at most by the rule but 1e-6 in truth, has its room.
+const CONFIRMED: f64 = 0.995;
+
+impl std::fmt::Display for Choice {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "chosen {}", self.chosen)?;
+        if let Some(next) = &self.runner_up {
+            write!(f, "; next best {next}")?;
+        }
+        let share = self.chosen.bytes as f64 / self.usual_bytes as f64;
+        write!(f, "; {:.0} % of the {} bytes of 128 centres in f16", 100.0 * share, self.usual_bytes)
+    }
+}
+
+impl std::fmt::Display for Layout {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { storage, bytes, error, .. } = self;
+        write!(f, "{} in {}, {bytes} bytes, {error:.2e} bilinear", self.axes.join(" × "), storage.name())
+    }
+}

@@ -1,0 +1,4 @@
+//! Experiments about the rules and the arithmetic: what f32 loses, and what a tolerance costs.
+
+pub mod atlas;
+pub mod trade;

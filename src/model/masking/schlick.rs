@@ -1,0 +1,47 @@
+//! Schlick's masking, whatever its k: G1 = μ / (μ (1 − k) + k). Twin of `shaders/masking/schlick.wgsl`.
+
+use crate::model::masking::{Masking, Toward};
+use crate::model::ndf::Ndf;
+use crate::model::parameters::Setting;
+use crate::model::{SlopeCounts, Term};
+use crate::reference;
+
+/// A choice of k.
+pub(crate) trait Schlick {
+    const TERM: Term;
+    const REFERENCE: &'static dyn reference::Masking;
+
+    const UNBOUNDED_OFF_PEAK: Option<&'static str> = None;
+
+    /// In [0, 1/2].
+    fn k(alpha: f64) -> f64;
+}
+
+impl<S: Schlick> Masking for S {
+    const TERM: Term = S::TERM;
+    const REFERENCE: &'static dyn reference::Masking = S::REFERENCE;
+    const UNBOUNDED_OFF_PEAK: Option<&'static str> = S::UNBOUNDED_OFF_PEAK;
+
+    fn counts(correlated: [SlopeCounts; 2], _tolerance: f64) -> [SlopeCounts; 2] {
+        correlated.map(|counts| counts.more(1.25))
+    }
+
+    fn visibility<N: Ndf>(i: &Toward, e: &Toward) -> f64 {
+        let below = |w: &Toward| below(w.mu, S::k(w.setting.alpha));
+        0.25 / (below(i) * below(e))
+    }
+
+    fn masking<N: Ndf>(x: f64, y: f64, mu_e: f64, s: &Setting) -> f64 {
+        let k = S::k(s.alpha);
+        2.0 / mu_e * below(mu_e, k) * (mu_e * (1.0 - k) * x + k * y)
+    }
+
+    fn mirror(mu: f64) -> f64 {
+        (mu / below(mu, S::k(0.0))).powi(2)
+    }
+}
+
+/// μ (1 − k) + k
+fn below(mu: f64, k: f64) -> f64 {
+    mu * (1.0 - k) + k
+}

@@ -1,0 +1,168 @@
+//! Composes the WGSL that one lobe of a table needs, and nothing else.
+//!
+//! Parts of a kind define the same names (`ndf`, `visibility`, `fresnel`, `lobe`), so a model is a
+//! list of files and a kernel calls `lobe` whatever it is. A module holds one kernel and one model:
+//! no switch over models is left for the device to run.
+
+use crate::base::precision::Precision;
+use crate::model::{Integral, Model, Part, part};
+
+/// A kernel: one entry point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Kernel {
+    /// Values over (α, θi, θe, δφ).
+    Values,
+    /// The same of a lobe that nothing multiplies, stored in words of 64 bits.
+    WideValues,
+    /// The same, added to those of earlier lobes.
+    AddValues,
+    /// Values at a list of pairs of directions.
+    Points,
+    /// The same, added to those of earlier lobes.
+    AddPoints,
+    /// Integrals in slopes, for tolerances that f32 can meet.
+    Slopes,
+    /// The same for finer ones.
+    FineSlopes,
+    /// Integrals over (θe, δφ).
+    Product,
+    /// Integrals over directions that the host finds.
+    Mapped,
+    /// Integrals by sampling the distribution of normals.
+    Ndf,
+    /// Integrals by sampling the visible normals.
+    Vndf,
+    /// The same, at random.
+    Random,
+    /// Integrals in closed form.
+    Analytic,
+    /// The outer sums, into channels.
+    Sum,
+    /// The same, added to those of earlier lobes.
+    AddSum,
+    /// Texels of a texture.
+    Pack,
+    /// Irradiance of an environment map.
+    Irradiance,
+    /// Nine spherical-harmonic coefficients of an environment map.
+    Harmonics,
+    /// Nothing but stores.
+    Fill,
+    /// Nothing but arithmetic.
+    MultiplyAdd,
+    /// What the driver does.
+    Canary,
+}
+
+/// Room for the rules of Gauss–Legendre that tables of coarse tolerances take, which a test of the models holds: 64 KiB in
+/// f64, what every device binds.
+pub(crate) const COARSE_NODES: usize = 2048;
+
+/// Quads of azimuths that one dispatch of values takes, each of so many factors: in a uniform buffer, of which every
+/// device binds 64 KiB.
+pub(crate) const VALUE_WINDOW: usize = 512;
+pub(crate) const QUAD_FACTORS: usize = 7;
+
+/// The WGSL of `kernel` for `model` (none: kernels that evaluate no model) and so many channels; 0 are the
+/// raw results of integrals that an outer sum goes on with.
+pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize, precision: Precision) -> String {
+    let files = kernel.files(channels);
+    if kernel.is_plain() {
+        return files.iter().map(|part| part.wgsl).collect();
+    }
+    // One source for both: no kernel calls a transcendental built-in, which f64 lacks.
+    let real = precision.name();
+    let mut source = format!("alias real = {real};\nalias real2 = vec2<real>;\nalias real4 = vec4<real>;\n");
+    if kernel == Kernel::Slopes {
+        source += &format!("const NODES = {COARSE_NODES}u;\n");
+    }
+    let add = matches!(kernel, Kernel::AddValues | Kernel::AddPoints | Kernel::AddSum);
+    source += &format!("const CHANNELS = {channels}u;\nconst ADD = {add};\n");
+    if kernel.is_of_values() {
+        let scaled = kernel != Kernel::WideValues;
+        source += &format!("const WINDOW = {VALUE_WINDOW}u;\nconst SCALED = {scaled};\n");
+    }
+    let mut add = |part: &Part| {
+        source += &format!("\n// ---- {}\n{}", part.name, part.wgsl);
+        for (name, wgsl) in part.shared {
+            let heading = format!("\n// ---- with {name}\n");
+            if !source.contains(&heading) {
+                source += &(heading + wgsl);
+            }
+        }
+    };
+    add(&part!("kernel/job"));
+    if let Some(model) = model {
+        add(&part!("pair"));
+        model.parts.iter().for_each(&mut add);
+        if let Integral::Slopes(slopes) = model.integral {
+            match kernel {
+                Kernel::Slopes => add(&slopes.coarse.part),
+                Kernel::FineSlopes => add(&slopes.fine.part),
+                Kernel::Ndf | Kernel::Vndf | Kernel::Random => {
+                    slopes.sampling.iter().for_each(|sampling| add(&sampling.part));
+                }
+                _ => {}
+            }
+        }
+    }
+    files.iter().for_each(&mut add);
+    match channels {
+        _ if kernel.is_of_values() => {}
+        0 => add(&part!("kernel/write_raw")),
+        _ => add(&part!("kernel/write_channels")),
+    }
+    source
+}
+
+const VALUES: Part = part!("kernel/values");
+const PUT: Part = part!("kernel/put");
+pub(super) const PUT_WIDE: Part = part!("kernel/put_wide");
+
+impl Kernel {
+    /// Its own files, in order.
+    fn files(self, channels: usize) -> &'static [Part] {
+        match (self, channels) {
+            (Self::Values | Self::AddValues, 1) => &[PUT, part!("kernel/store_1"), VALUES],
+            (Self::Values | Self::AddValues, 2) => &[PUT, part!("kernel/store_2"), VALUES],
+            (Self::Values | Self::AddValues, _) => &[PUT, part!("kernel/store_3"), VALUES],
+            (Self::WideValues, 1) => &[PUT_WIDE, part!("kernel/store_1"), VALUES],
+            (Self::WideValues, 2) => &[PUT_WIDE, part!("kernel/store_2"), VALUES],
+            (Self::WideValues, _) => &[PUT_WIDE, part!("kernel/store_3"), VALUES],
+            (Self::Points | Self::AddPoints, _) => &[part!("kernel/point"), part!("kernel/points")],
+            (Self::Mapped, _) => &[part!("kernel/point"), part!("kernel/mapped")],
+            (Self::Slopes, _) => {
+                &[part!("lobe/slopes"), part!("kernel/nodes_uniform"), part!("kernel/slopes")]
+            }
+            (Self::FineSlopes, _) => {
+                &[part!("lobe/slopes"), part!("kernel/nodes_storage"), part!("kernel/slopes")]
+            }
+            (Self::Product, _) => &[part!("kernel/product")],
+            (Self::Ndf, _) => &[part!("kernel/sampling"), part!("sampling/ndf"), part!("sampling/tabulated")],
+            (Self::Vndf, _) => {
+                &[part!("kernel/sampling"), part!("sampling/vndf"), part!("sampling/tabulated")]
+            }
+            (Self::Random, _) => {
+                &[part!("kernel/sampling"), part!("sampling/vndf"), part!("sampling/random")]
+            }
+            (Self::Analytic, _) => &[part!("kernel/analytic")],
+            (Self::Sum | Self::AddSum, _) => &[part!("kernel/sum")],
+            (Self::Pack, _) => &[part!("kernel/pack")],
+            (Self::Fill, _) => &[part!("probe/fill")],
+            (Self::MultiplyAdd, _) => &[part!("probe/multiply_add")],
+            (Self::Irradiance, _) => &[part!("light/irradiance")],
+            (Self::Harmonics, _) => &[part!("light/harmonics")],
+            (Self::Canary, _) => &[part!("probe/canary")],
+        }
+    }
+
+    fn is_of_values(self) -> bool {
+        matches!(self, Self::Values | Self::WideValues | Self::AddValues)
+    }
+
+    /// Whether it knows no job, model or precision: its file is all of it.
+    fn is_plain(self) -> bool {
+        use Kernel::{Canary, Fill, Harmonics, Irradiance, MultiplyAdd, Pack};
+        matches!(self, Irradiance | Harmonics | Pack | Fill | MultiplyAdd | Canary)
+    }
+}
