@@ -1,6 +1,8 @@
 //! The CPU path: the same rules as the kernels, in f64, on all cores.
 
-use crate::integrate::evaluate::integrate;
+#[cfg(feature = "files")]
+use crate::base::error::Error;
+use crate::integrate::evaluate;
 use crate::integrate::rule_set::{Work, WorkKind};
 use crate::model::lobe::Lobe;
 use crate::plan::TablePlan;
@@ -26,35 +28,10 @@ pub(crate) fn evaluate<E: Send>(
                     tick(share / rows as f64)
                 })?;
             }
-            WorkKind::Integrals { inner, outer } => match &outer[..] {
-                [sum] => {
-                    let texels = sums.len() / channels;
-                    sums.par_chunks_mut(channels).enumerate().try_for_each(|(texel, out)| {
-                        let mut total = [0.0; 2];
-                        for (k, weight) in sum.values.iter().enumerate() {
-                            let at = texel * sum.columns + k;
-                            let [a, b] =
-                                integrate(&work, inner, lobe, at / inner.count(), at % inner.count());
-                            total = [total[0] + weight * a, total[1] + weight * b];
-                        }
-                        add(out, lobe, total);
-                        tick(share / texels as f64)
-                    })?;
-                }
-                matrices => {
-                    let count = work.alphas.len() * inner.count();
-                    let one = |at: usize| {
-                        tick(share / count as f64)?;
-                        Ok(integrate(&work, inner, lobe, at / inner.count(), at % inner.count()))
-                    };
-                    let raw = (0..count).into_par_iter().map(one).collect::<Result<Vec<_>, E>>()?;
-                    let texels = matrices.iter().fold(raw, |raw, matrix| matrix.apply(&raw));
-                    let raised = |x: f64| if x < 0.0 && x >= -work.below_zero() { 0.0 } else { x };
-                    sums.chunks_mut(channels)
-                        .zip(texels)
-                        .for_each(|(out, sum)| add(out, lobe, sum.map(raised)));
-                }
-            },
+            WorkKind::Integrals { inner, outer } => {
+                let texels = evaluate::texels(&work, inner, outer, lobe, &|part| tick(share * part))?;
+                sums.chunks_mut(channels).zip(texels).for_each(|(out, sum)| add(out, lobe, sum));
+            }
         }
     }
     Ok(sums)
@@ -66,8 +43,8 @@ pub(crate) fn evaluate<E: Send>(
 pub(crate) fn stream(
     table: &TablePlan,
     tiles: &[std::ops::Range<usize>],
-    sink: &mut dyn FnMut(usize, &[f32]) -> crate::Result<()>,
-) -> crate::Result<()> {
+    sink: &mut dyn FnMut(usize, &[f32]) -> Result<(), Error>,
+) -> Result<(), Error> {
     let row = table.axes.last().map_or(1, |axis| axis.len()) * table.channels.len();
     let works: Vec<_> = table.lobes.iter().map(|lobe| (lobe, Work::new(table, lobe))).collect();
     for (k, tile) in tiles.iter().enumerate() {

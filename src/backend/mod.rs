@@ -2,3 +2,4 @@
 
 pub(crate) mod cpu;
 pub mod gpu;
+pub(crate) mod scaled_lobe;

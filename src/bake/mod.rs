@@ -10,6 +10,7 @@ use crate::base::timings::Timings;
 use crate::base::tolerance::FINEST;
 use crate::check::bilinear;
 use crate::check::{Check, cross_check};
+use crate::integrate::scale::factor_error;
 use crate::model::compensation::Factor;
 use crate::model::lobe::Lobe;
 use crate::plan::TablePlan;
@@ -17,7 +18,6 @@ use crate::table::quantity::Evaluation;
 use crate::table::rule::Rule;
 use crate::table::storage::{Storage, Stored};
 use crate::table::{Table, TableError, Values};
-use serde::Serialize;
 use std::time::Instant;
 
 /// What evaluates tables.
@@ -251,7 +251,7 @@ impl Path<'_> {
         if plan.quantity.evaluation != Evaluation::Value {
             return (plan.rule == Rule::Warped).then_some(plan.tolerance);
         }
-        let factors = plan.factor_error();
+        let factors = factor_error(plan);
         Some(
             factors
                 + match self {

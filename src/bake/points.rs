@@ -16,11 +16,11 @@
 //! ```
 
 use crate::backend::gpu;
+use crate::backend::scaled_lobe::ScaledLobe;
 use crate::bake::Evaluator;
 use crate::base::angles::Angles;
 use crate::base::error::{Error, Result};
 use crate::base::half_angle::{Azimuth, Pair};
-use crate::integrate::scale::Scale;
 use crate::model::Shape;
 use crate::model::lobe::Lobe;
 use rayon::prelude::*;
@@ -89,7 +89,7 @@ impl<'a> Points<'a> {
             let Some(shape) = lobe.model.shape else { return Ok(0.0) };
             in_range(&shape, shape.measure(lobe.roughness.ok_or_else(missing)?))
         });
-        let at = |(lobe, alpha): (&Lobe, Result<f64>)| Ok(At::new(lobe, alpha?, lobe.roughness));
+        let at = |(lobe, alpha): (&Lobe, Result<f64>)| Ok(ScaledLobe::new(lobe, alpha?, lobe.roughness));
         let setting = self.lobes.iter().zip(alphas).map(at).collect::<Result<Vec<_>>>()?;
         self.run(&[setting], angles, values)
     }
@@ -101,10 +101,10 @@ impl<'a> Points<'a> {
     /// # Errors
     /// When angles are no directions, an α is none, or the device fails.
     pub fn sweep(&mut self, alphas: &[f64], angles: &[Angles], values: &mut Vec<f32>) -> Result<()> {
-        let setting = |alpha: f64| -> Result<Vec<At>> {
+        let setting = |alpha: f64| -> Result<Vec<ScaledLobe>> {
             let at = |lobe: &Lobe| {
-                let Some(shape) = lobe.model.shape else { return Ok(At::new(lobe, 0.0, None)) };
-                Ok(At::new(lobe, in_range(&shape, alpha)?, Some(shape.roughness(alpha))))
+                let Some(shape) = lobe.model.shape else { return Ok(ScaledLobe::new(lobe, 0.0, None)) };
+                Ok(ScaledLobe::new(lobe, in_range(&shape, alpha)?, Some(shape.roughness(alpha))))
             };
             self.lobes.iter().map(at).collect()
         };
@@ -112,8 +112,8 @@ impl<'a> Points<'a> {
         self.run(&settings, angles, values)
     }
 
-    /// At each setting: an α and a factor for each lobe.
-    fn run(&mut self, settings: &[Vec<At>], angles: &[Angles], values: &mut Vec<f32>) -> Result<()> {
+    /// ScaledLobe each setting: an α and a factor for each lobe.
+    fn run(&mut self, settings: &[Vec<ScaledLobe>], angles: &[Angles], values: &mut Vec<f32>) -> Result<()> {
         if let Some((k, Err(why))) =
             angles.par_iter().map(Angles::check).enumerate().find_first(|(_, checked)| checked.is_err())
         {
@@ -129,9 +129,9 @@ impl<'a> Points<'a> {
         }
         match &mut self.place {
             Place::Device(points) => {
-                let on_device = |setting: &Vec<At>| -> Vec<At> {
+                let on_device = |setting: &Vec<ScaledLobe>| -> Vec<ScaledLobe> {
                     let lobes = self.lobes.iter().zip(setting);
-                    let at = |(lobe, at): (&Lobe, &At)| At {
+                    let at = |(lobe, at): (&Lobe, &ScaledLobe)| ScaledLobe {
                         alpha: lobe.model.on_device(at.alpha),
                         scale: at.scale.clone(),
                     };
@@ -158,20 +158,8 @@ impl<'a> Points<'a> {
 /// Factors that the CPU path holds at once: 6 MiB.
 const CPU_CHUNK: usize = 1 << 16;
 
-/// Where a lobe is evaluated: its α, and what it is multiplied with.
-pub(crate) struct At {
-    pub alpha: f64,
-    pub scale: Scale,
-}
-
-impl At {
-    fn new(lobe: &Lobe, alpha: f64, roughness: Option<f64>) -> Self {
-        Self { alpha, scale: Scale::new(&lobe.factors, roughness) }
-    }
-}
-
 /// A value by the lobes' f64 twins.
-fn twins(lobes: &[Lobe], setting: &[At], (pair, azimuth): &(Pair, Azimuth), out: &mut [f32]) {
+fn twins(lobes: &[Lobe], setting: &[ScaledLobe], (pair, azimuth): &(Pair, Azimuth), out: &mut [f32]) {
     let mut sums = [0.0; 3];
     for (lobe, at) in lobes.iter().zip(setting) {
         let [a, b] = (lobe.model.lobe)(pair, azimuth, &lobe.setting(at.alpha));

@@ -1,11 +1,12 @@
 //! 1 − E(μ) of a model at a setting, as a polynomial in asinh(μ/δ): E turns at μ ≈ α, and is analytic there. Where the
 //! model has a seam, so that it is analytic neither there nor at the normal, as two: below it, and above in asinh((1 − μ)/δ).
 
-use crate::backend::cpu;
 use crate::base::error::Result;
 use crate::base::half_angle::MU_MIN;
 use crate::base::quadrature::gauss_legendre;
 use crate::base::tolerance::FINEST;
+use crate::integrate::evaluate;
+use crate::integrate::rule_set::{Work, WorkKind};
 use crate::model::Model;
 use crate::model::parameters::Setting;
 use crate::plan::TablePlan;
@@ -238,9 +239,11 @@ fn missing(model: &'static Model, setting: &Setting, mus: Vec<f64>) -> Vec<f64> 
         let axes = vec![Axis::listed(Variable::Mu, mus)?];
         let plan = TablePlan::basis("E", &SPLIT_SUM, model, roughness, axes)?;
         let plan = plan.with_places(setting.parameters).with_tolerance(FINEST);
-        let channels = plan.channels.len();
-        let values = cpu::evaluate(&plan, &|_| Ok::<_, Infallible>(())).unwrap_or_default();
-        Ok(values.chunks(channels).map(|ab| 1.0 - ab.iter().sum::<f64>()).collect())
+        let lobe = &plan.lobes[0];
+        let work = Work::new(&plan, lobe);
+        let WorkKind::Integrals { inner, outer } = &work.kind else { return Ok(vec![f64::NAN; count]) };
+        let Ok(texels) = evaluate::texels(&work, inner, outer, lobe, &|_| Ok::<_, Infallible>(()));
+        Ok(texels.into_iter().map(|[a, b]| 1.0 - (a + b)).collect())
     };
     // A plan refuses what has no albedo; were it to come here, no number would.
     albedo().unwrap_or_else(|_| vec![f64::NAN; count])

@@ -9,7 +9,7 @@ use crate::integrate::chebyshev::{LARGEST, Matrix, Spread};
 use crate::integrate::direction_rule::{MappedWork, Source};
 use crate::integrate::product_rule::Nodes;
 use crate::integrate::sample_rule::{SampleWork, Sampler};
-use crate::integrate::scale::Scale;
+use crate::integrate::scale::{Scale, scales};
 use crate::integrate::slope_rule::SlopeWork;
 use crate::model::directions::{Fixed, Map};
 use crate::model::lobe::Lobe;
@@ -92,7 +92,7 @@ impl Work {
     pub fn new(table: &TablePlan, lobe: &Lobe) -> Self {
         let alphas = table.alphas(lobe);
         match table.quantity.evaluation {
-            Evaluation::Value => Self { alphas, scales: table.scales(lobe), kind: values(table) },
+            Evaluation::Value => Self { alphas, scales: scales(table, lobe), kind: values(table) },
             Evaluation::Directional => integrals(table, lobe, alphas, &directions(table), &[1.0]),
             Evaluation::Hemispherical => {
                 let tolerance = table.rule_tolerance();
@@ -265,7 +265,7 @@ fn integrals(table: &TablePlan, lobe: &Lobe, alphas: Vec<f64>, fixed: &[[f64; 2]
         };
         // Of the split sum it is ωe that is fixed.
         let fixed_is_exitant = table.quantity.variables == [Variable::Mu];
-        let work = mapped(source).times(table.scales(lobe), fixed_is_exitant);
+        let work = mapped(source).times(scales(table, lobe), fixed_is_exitant);
         return new(alphas, of(Inner::Mapped(work), weights.to_vec()));
     }
     if let (Some((sampler, samples)), Integral::Slopes(slopes)) = (sampler, lobe.model.integral)

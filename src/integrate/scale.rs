@@ -2,6 +2,10 @@
 
 use super::albedo_curve::{CROSSINGS, Curve};
 use crate::model::compensation::{ALBEDO_ERROR, Factor};
+use crate::model::lobe::Lobe;
+use crate::plan::TablePlan;
+use crate::table::axis::Variable;
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// The product of a lobe's factors in a row of a table.
@@ -93,4 +97,21 @@ impl Known {
 /// Schlick's F of a dielectric of 1.5.
 fn coat(mu: f64) -> f64 {
     0.04 + 0.96 * (1.0 - mu).powi(5)
+}
+
+/// The factors of a lobe in each row of a table; empty where it has none.
+pub(crate) fn scales(table: &TablePlan, lobe: &Lobe) -> Vec<Scale> {
+    if lobe.factors.is_empty() {
+        return Vec::new();
+    }
+    let rows: Vec<_> = match table.axis(Variable::Roughness) {
+        Some(axis) => axis.values.iter().map(|&roughness| Some(roughness)).collect(),
+        None => vec![lobe.roughness],
+    };
+    rows.into_par_iter().map(|row| Scale::new(&lobe.factors, row)).collect()
+}
+
+/// The relative error that factors add to a table's values.
+pub(crate) fn factor_error(table: &TablePlan) -> f64 {
+    table.lobes.iter().flat_map(|lobe| scales(table, lobe)).map(|scale| scale.error()).fold(0.0, f64::max)
 }

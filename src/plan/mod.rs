@@ -3,7 +3,6 @@
 
 use crate::base::error::{Error, Result};
 use crate::base::precision::{INTEGRAL_F32, Precision, VALUE_F32};
-use crate::integrate::scale::Scale;
 use crate::model::compensation::{Compensation, Factor};
 use crate::model::lobe::Lobe;
 use crate::model::parameters::Parameters;
@@ -15,7 +14,6 @@ use crate::table::report::Choice;
 use crate::table::rule::CHUNK;
 use crate::table::rule::{MAX_GAUSS, MAX_GRID, MAX_SAMPLES, Rule};
 use crate::table::storage::{Storage, UNORM};
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -318,23 +316,6 @@ impl TablePlan {
             least * stretched * factors.max(1.0)
         };
         self.lobes.iter().map(of).fold(INTEGRAL_F32, f64::max)
-    }
-
-    /// What a lobe's factors are in each row of the table; none: nothing.
-    pub(crate) fn scales(&self, lobe: &Lobe) -> Vec<Scale> {
-        if lobe.factors.is_empty() {
-            return Vec::new();
-        }
-        let rows: Vec<_> = match self.axis(Variable::Roughness) {
-            Some(axis) => axis.values.iter().map(|&roughness| Some(roughness)).collect(),
-            None => vec![lobe.roughness],
-        };
-        rows.into_par_iter().map(|row| Scale::new(&lobe.factors, row)).collect()
-    }
-
-    /// The relative error that factors add to its values.
-    pub(crate) fn factor_error(&self) -> f64 {
-        self.lobes.iter().flat_map(|lobe| self.scales(lobe)).map(|scale| scale.error()).fold(0.0, f64::max)
     }
 
     /// The least arithmetic that meets the tolerance: f32 has a floor, of some hundred roundings in an

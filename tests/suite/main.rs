@@ -24,6 +24,7 @@ mod files;
 mod fresnel;
 mod hostile;
 mod integrals;
+mod layers;
 mod light;
 mod mirror_limit;
 mod ndfs;

@@ -1,4 +1,4 @@
-"""Rules for the integrals: Gauss-Legendre on panels, and mpmath's tanh-sinh for what is singular at its ends."""
+"""Rules for the integrals: Gauss-Legendre on panels, and tanh-sinh for what is singular at the ends of an interval."""
 
 from functools import lru_cache
 
@@ -32,21 +32,21 @@ def panels(breaks, n):
 
 
 def tanh_sinh(breaks, step):
-    """[(x, weight)] over consecutive intervals, by x = a + (b − a) e^s/(e^s + e^(−s)), s = π/2 sinh t."""
+    """[(x, weight)] over consecutive intervals, by x = a + (b − a)/(1 + e^(−2s)), s = π/2 sinh t, |t| ≤ 4."""
+    count = int(4 / step)
     rule = []
     for a, b in zip(breaks, breaks[1:]):
-        for k in range(-round(mpf(4) / step), round(mpf(4) / step) + 1):
-            t = k * step
+        for t in (k * step for k in range(-count, count + 1)):
             s = mp.pi / 2 * mp.sinh(t)
-            share = 1 / (1 + mp.exp(-2 * s))
-            rule.append((a + (b - a) * share, (b - a) * step * mp.pi * mp.cosh(t) / (4 * mp.cosh(s) ** 2)))
+            slope = step * mp.pi * mp.cosh(t) / (4 * mp.cosh(s) ** 2)
+            rule.append((a + (b - a) / (1 + mp.exp(-2 * s)), (b - a) * slope))
     return rule
 
 
 def graded(end, first, most):
-    """Ends of panels over [0, end], `first` long at the end, twice as long each before, `most` at most."""
+    """Ends of panels over [0, end]: the last is `first` long, each before it up to twice as long, `most` at most."""
     breaks, length = [end], first
-    while breaks[0] - length > length / 2:
+    while breaks[0] > length:
         breaks.insert(0, breaks[0] - length)
         length = min(2 * length, most)
     return [mpf(0), *breaks]

@@ -5,7 +5,7 @@ use crate::backend::gpu::baker::{Baker, Step, count};
 use crate::backend::gpu::device::Device;
 use crate::backend::gpu::dispatch::Job;
 use crate::backend::gpu::readback::Flight;
-use crate::bake::points::At;
+use crate::backend::scaled_lobe::ScaledLobe;
 use crate::base::angles::Angles;
 use crate::base::error::Result;
 use crate::base::half_angle::{Azimuth, Pair};
@@ -77,7 +77,12 @@ impl<'a> Points<'a> {
     }
 
     /// Fills `values`, by setting, point and channel. A setting has an α and a factor for each lobe.
-    pub fn evaluate(&mut self, settings: &[Vec<At>], angles: &[Angles], values: &mut [f32]) -> Result<()> {
+    pub fn evaluate(
+        &mut self,
+        settings: &[Vec<ScaledLobe>],
+        angles: &[Angles],
+        values: &mut [f32],
+    ) -> Result<()> {
         let per_chunk = CHUNK / settings.len().clamp(1, SETTINGS);
         let groups = ranges(settings.len(), SETTINGS);
         let chunks: Vec<_> = groups
@@ -100,14 +105,14 @@ impl<'a> Points<'a> {
     }
 
     /// Starts a chunk, whose factors are made.
-    fn launch(&mut self, slot: usize, chunk: &Chunk, settings: &[Vec<At>]) -> Result<()> {
+    fn launch(&mut self, slot: usize, chunk: &Chunk, settings: &[Vec<ScaledLobe>]) -> Result<()> {
         let Self { device, lobes, channels, factors, slots } = self;
         let Baker { device: wgpu, queue, .. } = &device.baker;
         let slot = &mut slots[slot];
         queue.write_buffer(&slot.points, 0, bytemuck::cast_slice(factors));
         let mut encoder = wgpu.create_command_encoder(&Default::default());
         for (k, setting) in settings.iter().enumerate() {
-            for ((pipeline, job), At { alpha, scale }) in lobes.iter().zip(setting) {
+            for ((pipeline, job), ScaledLobe { alpha, scale }) in lobes.iter().zip(setting) {
                 let (end, base) = (count(factors.len())?, count(k * factors.len())?);
                 let job = Job { end, base, alpha: *alpha as f32, ..*job };
                 let job = device.baker.init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
