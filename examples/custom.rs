@@ -81,10 +81,10 @@ fn main() -> gonio::Result<()> {
     let axes = vec![Axis::natural(Variable::ThetaI, 64)?];
     let plan = TablePlan::basis("moon", &RHO_DH, model::find("lommel-seeliger")?, None, axes)?;
     let table =
-        evaluator.bake(&plan.with_tolerance(1e-6), Check::All, &mut Timings::default(), &Unobserved)?;
+        evaluator.bake(&plan.with_tolerance(1e-6)?, Check::All, &mut Timings::default(), &Unobserved)?;
     println!("ρ_dh of 64 θi: {:.1e} off at most", table.error.measured_max.unwrap_or(f64::NAN));
 
-    let mut subject = Sum::model(&evaluator, Lobe::new(&MODEL, None, vec![[1.0, 0.0]; 3]), vec![])?;
+    let mut subject = Sum::model(&evaluator, Lobe::new(&MODEL, None, vec![[1.0, 0.0]; 3])?, vec![])?;
     let report =
         verify::check(&mut subject, &Options { budget: 1_000_000, ..Options::default() }, &Unobserved)?;
     for finding in &report.findings {

@@ -95,13 +95,10 @@ fn table() -> gonio::Result<TablePlan> {
     let axes =
         variables.into_iter().zip(SHAPE).map(|(v, n)| Axis::natural(v, n)).collect::<gonio::Result<_>>()?;
     let ggx = model::find("ggx")?;
-    let basis = TablePlan::basis("values", &quantity::BRDF, ggx, Some(0.5), axes)?;
     let weights = [1.0, 0.78, 0.34].map(|f0| [f0, 1.0]).to_vec();
-    Ok(TablePlan {
-        channels: ["R", "G", "B"].map(String::from).to_vec(),
-        lobes: vec![Lobe::new(ggx, Some(0.5), weights)],
-        ..basis
-    })
+    let lobe = Lobe::new(ggx, Some(0.5), weights)?;
+    let channels = ["R", "G", "B"].map(String::from).to_vec();
+    TablePlan::new("values", &quantity::BRDF, "gold", channels, vec![lobe], axes)
 }
 
 /// What is timed.

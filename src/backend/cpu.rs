@@ -15,10 +15,10 @@ pub(crate) fn evaluate<E: Send>(
     table: &TablePlan,
     tick: &(impl Fn(f64) -> Result<(), E> + Sync),
 ) -> Result<Vec<f64>, E> {
-    let channels = table.channels.len();
+    let channels = table.channels().len();
     let mut sums = vec![0.0; table.texels() * channels];
-    let share = 1.0 / table.lobes.len() as f64;
-    for lobe in &table.lobes {
+    let share = 1.0 / table.lobes().len() as f64;
+    for lobe in table.lobes() {
         let work = Work::new(table, lobe);
         match &work.kind {
             WorkKind::Values(values) => {
@@ -45,8 +45,8 @@ pub(crate) fn stream(
     tiles: &[std::ops::Range<usize>],
     sink: &mut dyn FnMut(usize, &[f32]) -> Result<(), Error>,
 ) -> Result<(), Error> {
-    let row = table.axes.last().map_or(1, |axis| axis.len()) * table.channels.len();
-    let works: Vec<_> = table.lobes.iter().map(|lobe| (lobe, Work::new(table, lobe))).collect();
+    let row = table.axes().last().map_or(1, |axis| axis.len()) * table.channels().len();
+    let works: Vec<_> = table.lobes().iter().map(|lobe| (lobe, Work::new(table, lobe))).collect();
     for (k, tile) in tiles.iter().enumerate() {
         let mut sums = vec![0.0; tile.len() * row];
         sums.par_chunks_mut(row).zip(tile.clone()).for_each(|(out, row)| {
@@ -63,13 +63,13 @@ fn add_row(out: &mut [f64], lobe: &Lobe, work: &Work, row: usize) {
     let setting = lobe.setting(work.alphas[row / values.rows()]);
     let (pair, frame) = values.place(row % values.rows());
     let scale = work.scales.get(row / values.rows()).map_or(1.0, |scale| scale.at(pair.mu_i, pair.mu_e));
-    for (azimuth, out) in values.frames[frame].iter().zip(out.chunks_mut(lobe.weights.len())) {
-        add(out, lobe, (lobe.model.lobe)(pair, azimuth, &setting).map(|x| scale * x));
+    for (azimuth, out) in values.frames[frame].iter().zip(out.chunks_mut(lobe.weights().len())) {
+        add(out, lobe, (lobe.model().lobe)(pair, azimuth, &setting).map(|x| scale * x));
     }
 }
 
 fn add(out: &mut [f64], lobe: &Lobe, [a, b]: [f64; 2]) {
-    for (out, [weight_a, weight_b]) in out.iter_mut().zip(&lobe.weights) {
+    for (out, [weight_a, weight_b]) in out.iter_mut().zip(lobe.weights()) {
         *out += weight_a * a + weight_b * b;
     }
 }

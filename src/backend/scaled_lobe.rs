@@ -11,6 +11,6 @@ pub(crate) struct ScaledLobe {
 
 impl ScaledLobe {
     pub fn new(lobe: &Lobe, alpha: f64, roughness: Option<f64>) -> Self {
-        Self { alpha, scale: Scale::new(&lobe.factors, roughness) }
+        Self { alpha, scale: Scale::new(lobe.factors(), roughness) }
     }
 }

@@ -7,7 +7,7 @@ use crate::backend::gpu::{Device, DeviceChoice};
 use crate::base::error::{Error, Result};
 use crate::base::precision::{Precision, STORED_F32, VALUE_F32};
 use crate::base::timings::Timings;
-use crate::base::tolerance::FINEST;
+use crate::base::tolerance::{CERTIFY_RATIO, ENERGY_SLACK, FINEST, KEPT_SHARE};
 use crate::check::bilinear;
 use crate::check::{Check, cross_check};
 use crate::integrate::scale::factor_error;
@@ -72,7 +72,7 @@ impl Evaluator {
         observer: &dyn Observer,
     ) -> Result<Table> {
         let computed = self.compute(plan, check, stages, observer)?;
-        observer.begin(&format!("checking {}", plan.name));
+        observer.begin(&format!("checking {}", plan.name()));
         let start = Instant::now();
         let table = computed.check(plan, check, &|share| observer.advance(share));
         stages.check += start.elapsed().as_secs_f64();
@@ -88,7 +88,7 @@ impl Evaluator {
         observer: &dyn Observer,
     ) -> Result<Computed> {
         plan.check_fits_memory()?;
-        observer.begin(&format!("baking {}", plan.name));
+        observer.begin(&format!("baking {}", plan.name()));
         let tick = |share| observer.advance(share);
         let before = stages.dispatch + stages.readback;
         let path = self.path(plan);
@@ -96,8 +96,8 @@ impl Evaluator {
         let seconds = stages.dispatch + stages.readback - before;
         let mut estimate = path.estimate(plan);
         if check != Check::Sample(0)
-            && plan.rule == Rule::Warped
-            && plan.quantity.evaluation != Evaluation::Value
+            && plan.rule() == Rule::Warped
+            && plan.quantity().evaluation != Evaluation::Value
         {
             // The finest rule has none beyond it to be checked by: comparing it with itself proves nothing.
             let finest = plan.rule_tolerance() <= FINEST;
@@ -121,7 +121,7 @@ impl Evaluator {
         match (self, plan.precision()) {
             (Self::Device(device), Precision::F32) => Path::Device(device, Precision::F32),
             (Self::Device(device), Precision::F64)
-                if device.has_f64() && plan.quantity.evaluation != Evaluation::Value =>
+                if device.has_f64() && plan.quantity().evaluation != Evaluation::Value =>
             {
                 Path::Device(device, Precision::F64)
             }
@@ -156,11 +156,11 @@ impl Computed {
         let Self { values, estimate, origin } = self;
         let Stored { values, underflows } = plan
             .stored()
-            .store(values, plan.quantity.error)
-            .map_err(|why| Error::Promise(format!("table {}: {why}", plan.name)))?;
-        let rounding = plan.stored().coarse_rounding(plan.quantity.error);
+            .store(values, plan.quantity().error)
+            .map_err(|why| Error::Promise(format!("table {}: {why}", plan.name())))?;
+        let rounding = plan.stored().coarse_rounding(plan.quantity().error);
         let mut error = cross_check(plan, &values, check, estimate.map(|e| e + rounding), tick)?;
-        error.underflows = (plan.storage == Storage::F16).then_some(underflows);
+        error.underflows = (plan.storage() == Storage::F16).then_some(underflows);
         error.interpolation = bilinear::measure(plan, &values, check)?;
         let table = origin.table(plan, values, error);
         table.check_sane()?;
@@ -173,17 +173,17 @@ impl Origin {
     /// The table of a plan, with what was found.
     pub(crate) fn table(self, plan: &TablePlan, values: Values, error: TableError) -> Table {
         Table {
-            name: plan.name.clone(),
-            quantity: plan.quantity.name.into(),
-            unit: plan.quantity.unit.into(),
-            subject: plan.subject.clone(),
+            name: plan.name().into(),
+            quantity: plan.quantity().name.into(),
+            unit: plan.quantity().unit.into(),
+            subject: plan.subject().into(),
             parameters: plan.parameters(),
-            axes: plan.axes.clone(),
-            channels: plan.channels.clone(),
+            axes: plan.axes().to_vec(),
+            channels: plan.channels().to_vec(),
             values,
             rule: self.rule,
             storage: plan.stored(),
-            bilinear: plan.bilinear.clone(),
+            bilinear: plan.bilinear().cloned(),
             precision: self.precision.into(),
             error,
             seconds: self.seconds,
@@ -231,9 +231,9 @@ impl Path<'_> {
         let mut spent = Timings::default();
         let mut left = 0.0;
         for finer in 1..=TRIES {
-            let second = plan.clone().with_tolerance(plan.tolerance * 0.1f64.powi(finer));
+            let second = plan.clone().with_tolerance(plan.tolerance() * CERTIFY_RATIO.powi(finer))?;
             let second = self.evaluate(&second, &mut spent, tick)?;
-            let taken = values.take_beyond(0.5 * plan.tolerance, &second, plan.channels.len());
+            let taken = values.take_beyond(KEPT_SHARE * plan.tolerance(), &second, plan.channels().len());
             left = taken.kept.max(taken.largest);
             if taken.largest == 0.0 {
                 break;
@@ -248,8 +248,8 @@ impl Path<'_> {
     /// What is promised before anything is measured: the budget of values, the tolerance of the warped
     /// rule. The other rules promise nothing.
     pub(crate) fn estimate(self, plan: &TablePlan) -> Option<f64> {
-        if plan.quantity.evaluation != Evaluation::Value {
-            return (plan.rule == Rule::Warped).then_some(plan.tolerance);
+        if plan.quantity().evaluation != Evaluation::Value {
+            return (plan.rule() == Rule::Warped).then_some(plan.tolerance());
         }
         let factors = factor_error(plan);
         Some(
@@ -265,8 +265,8 @@ impl Path<'_> {
 
     /// The rule, and where it ran if that was not the evaluator's own place.
     fn rule(self, plan: &TablePlan, evaluator: &Evaluator) -> String {
-        let value = plan.quantity.evaluation == Evaluation::Value;
-        let rule = if value { "pointwise".into() } else { plan.rule.to_string() };
+        let value = plan.quantity().evaluation == Evaluation::Value;
+        let rule = if value { "pointwise".into() } else { plan.rule().to_string() };
         match (self, evaluator) {
             (Self::Cpu(_), Evaluator::Device(_)) => {
                 format!("{rule}, on the CPU: f32 cannot meet the tolerance")
@@ -289,68 +289,69 @@ impl Path<'_> {
 /// # Errors
 /// [`Error::Promise`] with the worst texel.
 pub fn within_tolerance(plan: &TablePlan, table: &Table) -> Result<()> {
-    if plan.bilinear.is_some()
+    if plan.bilinear().is_some()
         && let Some(between) = &table.error.interpolation
-        && let Some(max) = between.max.filter(|&max| max > plan.tolerance)
+        && let Some(max) = between.max.filter(|&max| max > plan.tolerance())
     {
         return Err(Error::Promise(format!(
             "table {}: bilinear look-ups are off by {max:.2e} where {:.0e} is allowed ({:?}); allow more, or \
              give counts in place of auto",
-            plan.name, plan.tolerance, between.worst
+            plan.name(),
+            plan.tolerance(),
+            between.worst
         )));
     }
     // Measured against the reference, or between two rules: whichever is worse.
-    let certified = plan.rule == Rule::Warped && plan.quantity.evaluation != Evaluation::Value;
+    let certified = plan.rule() == Rule::Warped && plan.quantity().evaluation != Evaluation::Value;
     let between = table.error.estimate.filter(|_| certified);
     let measured = table.error.measured_max.into_iter().chain(between).fold(0.0, f64::max);
-    if measured <= plan.tolerance {
+    if measured <= plan.tolerance() {
         return Ok(());
     }
     let place: Vec<_> = table.error.worst.iter().map(|(name, value)| format!("{name} = {value}")).collect();
-    let remedy = match plan.rule {
+    let remedy = match plan.rule() {
         Rule::Grid { .. } => "take a finer grid or the warped rule",
         Rule::Gauss { .. } | Rule::Hammersley { .. } | Rule::Vndf { .. } | Rule::Random { .. } => {
             "take more nodes or samples, or the warped rule"
         }
         Rule::Warped if table.storage.bytes() < Storage::F32.bytes() => "allow more, or store it as f32",
         // No table is better than the f32 that it is stored in.
-        Rule::Warped if table.precision == "f32" && plan.tolerance > STORED_F32 => {
+        Rule::Warped if table.precision == "f32" && plan.tolerance() > STORED_F32 => {
             "allow more, or bake with --device cpu, which is f64"
         }
         Rule::Warped => "allow more",
     };
     Err(Error::Promise(format!(
         "table {}: its error is {measured:.2e} where {:.0e} is allowed ({}); {remedy}",
-        plan.name,
-        plan.tolerance,
+        plan.name(),
+        plan.tolerance(),
         place.join(", ")
     )))
 }
 
 /// No direction may send back more than the lobes' models promise (1 each where energy is conserved).
 fn check_energy(plan: &TablePlan, table: &Table) -> Result<()> {
-    if plan.quantity.evaluation == Evaluation::Value {
+    if plan.quantity().evaluation == Evaluation::Value {
         return Ok(());
     }
     // A basis is weighed by F0 and F90 ≤ 1, so its components reflect together; RGB does not mix.
     let together = plan.is_basis();
     // What is missing from a lobe counts with that lobe.
-    let is_missing = |lobe: &Lobe| lobe.factors.iter().any(Factor::is_missing);
-    let alone = plan.lobes.iter().all(is_missing);
+    let is_missing = |lobe: &Lobe| lobe.factors().iter().any(Factor::is_missing);
+    let alone = plan.lobes().iter().all(is_missing);
     let bound: f64 = plan
-        .lobes
+        .lobes()
         .iter()
         .filter(|lobe| alone || !is_missing(lobe))
-        .map(|lobe| lobe.weights.as_flattened().iter().copied().fold(0.0, f64::max) * lobe.rho_bound())
+        .map(|lobe| lobe.weights().as_flattened().iter().copied().fold(0.0, f64::max) * lobe.rho_bound())
         .sum();
     for texel in 0..table.texels() {
         let channels = table.texel(texel).into_iter();
         let reflected = if together { channels.sum() } else { channels.fold(0.0, f64::max) };
-        // Twice the tolerance, as A and B may both be off.
-        if reflected > bound + 2.0 * plan.tolerance {
+        if reflected > bound + ENERGY_SLACK * plan.tolerance() {
             return Err(Error::Promise(format!(
                 "table {}: it reflects {reflected} at {}, more than the {bound} that its models promise",
-                plan.name,
+                plan.name(),
                 table.place(texel)
             )));
         }

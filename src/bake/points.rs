@@ -43,12 +43,12 @@ impl<'a> Points<'a> {
     /// # Errors
     /// When a lobe is a delta, the channels do not fit, or the device fails.
     pub fn new(evaluator: &'a Evaluator, lobes: &[Lobe]) -> Result<Self> {
-        let channels = lobes.first().map_or(0, |lobe| lobe.weights.len());
-        if !(1..=3).contains(&channels) || lobes.iter().any(|lobe| lobe.weights.len() != channels) {
+        let channels = lobes.first().map_or(0, |lobe| lobe.weights().len());
+        if !(1..=3).contains(&channels) || lobes.iter().any(|lobe| lobe.weights().len() != channels) {
             return Err(Error::input("a list of points takes one lobe or more, all of 1 to 3 channels"));
         }
-        if let Some(lobe) = lobes.iter().find(|lobe| lobe.model.is_delta()) {
-            return Err(Error::input(format!("{} is a delta and has no values", lobe.model.name)));
+        if let Some(lobe) = lobes.iter().find(|lobe| lobe.model().is_delta()) {
+            return Err(Error::input(format!("{} is a delta and has no values", lobe.model().name)));
         }
         let place = match evaluator {
             Evaluator::Device(device) => Place::Device(Box::new(gpu::Points::new(device, lobes)?)),
@@ -62,7 +62,7 @@ impl<'a> Points<'a> {
     /// # Errors
     /// When the models or the channels differ.
     pub fn set(&mut self, lobes: &[Lobe]) -> Result<()> {
-        let shape = |lobe: &Lobe| (lobe.model.name, lobe.weights.len());
+        let shape = |lobe: &Lobe| (lobe.model().name, lobe.weights().len());
         if !self.lobes.iter().map(shape).eq(lobes.iter().map(shape)) {
             return Err(Error::input("a list of points keeps its models and its channels"));
         }
@@ -75,7 +75,7 @@ impl<'a> Points<'a> {
 
     /// Numbers of a value.
     pub fn channels(&self) -> usize {
-        self.lobes[0].weights.len()
+        self.lobes[0].weights().len()
     }
 
     /// f, sr⁻¹, at each pair and for each channel, bit by bit as it was computed; in place of what `values`
@@ -85,11 +85,11 @@ impl<'a> Points<'a> {
     /// When angles are no directions, a lobe that needs a roughness has none, or the device fails.
     pub fn evaluate(&mut self, angles: &[Angles], values: &mut Vec<f32>) -> Result<()> {
         let alphas = self.lobes.iter().map(|lobe| {
-            let missing = || Error::input(format!("{} needs a roughness", lobe.model.name));
-            let Some(shape) = lobe.model.shape else { return Ok(0.0) };
-            in_range(&shape, shape.measure(lobe.roughness.ok_or_else(missing)?))
+            let missing = || Error::input(format!("{} needs a roughness", lobe.model().name));
+            let Some(shape) = lobe.model().shape else { return Ok(0.0) };
+            in_range(&shape, shape.measure(lobe.roughness().ok_or_else(missing)?))
         });
-        let at = |(lobe, alpha): (&Lobe, Result<f64>)| Ok(ScaledLobe::new(lobe, alpha?, lobe.roughness));
+        let at = |(lobe, alpha): (&Lobe, Result<f64>)| Ok(ScaledLobe::new(lobe, alpha?, lobe.roughness()));
         let setting = self.lobes.iter().zip(alphas).map(at).collect::<Result<Vec<_>>>()?;
         self.run(&[setting], angles, values)
     }
@@ -103,7 +103,7 @@ impl<'a> Points<'a> {
     pub fn sweep(&mut self, alphas: &[f64], angles: &[Angles], values: &mut Vec<f32>) -> Result<()> {
         let setting = |alpha: f64| -> Result<Vec<ScaledLobe>> {
             let at = |lobe: &Lobe| {
-                let Some(shape) = lobe.model.shape else { return Ok(ScaledLobe::new(lobe, 0.0, None)) };
+                let Some(shape) = lobe.model().shape else { return Ok(ScaledLobe::new(lobe, 0.0, None)) };
                 Ok(ScaledLobe::new(lobe, in_range(&shape, alpha)?, Some(shape.roughness(alpha))))
             };
             self.lobes.iter().map(at).collect()
@@ -132,7 +132,7 @@ impl<'a> Points<'a> {
                 let on_device = |setting: &Vec<ScaledLobe>| -> Vec<ScaledLobe> {
                     let lobes = self.lobes.iter().zip(setting);
                     let at = |(lobe, at): (&Lobe, &ScaledLobe)| ScaledLobe {
-                        alpha: lobe.model.on_device(at.alpha),
+                        alpha: lobe.model().on_device(at.alpha),
                         scale: at.scale.clone(),
                     };
                     lobes.map(at).collect()
@@ -162,9 +162,9 @@ const CPU_CHUNK: usize = 1 << 16;
 fn twins(lobes: &[Lobe], setting: &[ScaledLobe], (pair, azimuth): &(Pair, Azimuth), out: &mut [f32]) {
     let mut sums = [0.0; 3];
     for (lobe, at) in lobes.iter().zip(setting) {
-        let [a, b] = (lobe.model.lobe)(pair, azimuth, &lobe.setting(at.alpha));
+        let [a, b] = (lobe.model().lobe)(pair, azimuth, &lobe.setting(at.alpha));
         let scale = at.scale.at(pair.mu_i, pair.mu_e);
-        for (sum, [weight_a, weight_b]) in sums.iter_mut().zip(&lobe.weights) {
+        for (sum, [weight_a, weight_b]) in sums.iter_mut().zip(lobe.weights()) {
             *sum += scale * (weight_a * a + weight_b * b);
         }
     }

@@ -8,4 +8,4 @@ pub mod quadrature;
 pub mod radiometry;
 pub(crate) mod sequence;
 pub mod timings;
-pub(crate) mod tolerance;
+pub mod tolerance;

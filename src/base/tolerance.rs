@@ -1,4 +1,81 @@
-//! Classes of tolerances, by which node counts are tabulated.
+//! The tolerance of a table, and how it is spent.
+//!
+//! A table keeps a tolerance T: the largest error that its stored values may have, absolute for integrals and relative
+//! for values. This page is the only place that divides it.
+//!
+//! | who spends | share | why |
+//! |---|---|---|
+//! | the quadrature rule | T, or T/10 ([`RULE_SHARE`]) where storage rounds or a reader interpolates | rounding to f16 or unorm16 and bilinear look-ups take the rest |
+//! | the rule below unorm16 | at most ¼ step ([`UNORM_RULE`]) | the rule may not lift an integral of 1 above what rounds to 1 |
+//! | interpolation between integrals | 1/8 of the rule's share along each axis ([`CHEBYSHEV_SHARE`]) | the rule at the sources and f32 rounding take the other 6/8 |
+//! | a lobe times factors | 1/100 of the rule's share ([`FACTOR_SHARE`]) | node counts are measured for the lobe alone; a factor bends ρ where the lobe does not: with counts of the full share a restored lobe is off by 9e-6 at 1e-6 |
+//! | the certificate's second rule | T/10 ([`CERTIFY_RATIO`]) | its own error then is a tenth of what it judges |
+//! | a texel that the certificate keeps | T/2 ([`KEPT_SHARE`]) | both rules may err towards each other |
+//! | energy above the declared bound | 2 T ([`ENERGY_SLACK`]) | two channels add up, each within T |
+//! | a layout's bilinear error | 0.98 T ([`LAYOUT_MARGIN`]) | the search tests points; the worst lies between them |
+//! | the search's reference table | T/100 ([`LAYOUT_REFERENCE_SHARE`]) | it stands in for the exact values |
+//!
+//! What follows from a table's tolerance (the rule's share, the precision, the storage) is decided once, when
+//! the plan is checked, and carried by [`TablePlan`](crate::plan::TablePlan).
+
+use super::error::{Error, Result};
+
+/// The largest error that a table may have: finite and above 0.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+pub struct Tolerance(f64);
+
+impl Tolerance {
+    /// The tolerance where nobody names one: 1e-4.
+    pub const DEFAULT: Self = Self(1e-4);
+
+    /// A tolerance of `value`.
+    ///
+    /// # Errors
+    /// When it is not finite or not above 0.
+    pub fn new(value: f64) -> Result<Self> {
+        if value.is_finite() && value > 0.0 {
+            return Ok(Self(value));
+        }
+        Err(Error::input(format!("a tolerance of {value}; give a number above 0, such as 1e-4")))
+    }
+
+    /// A tolerance from a constant, or from a share of one that was checked.
+    pub(crate) const fn known(value: f64) -> Self {
+        Self(value)
+    }
+
+    /// The number.
+    pub const fn get(self) -> f64 {
+        self.0
+    }
+}
+
+/// The rule's share where rounding of storage or bilinear look-ups take the rest.
+pub(crate) const RULE_SHARE: f64 = 0.1;
+
+/// The most that the rule may be off below unorm16: a quarter of its step, 1/65535.
+pub(crate) const UNORM_RULE: f64 = 0.25 / 65535.0;
+
+/// The share of each axis that is interpolated between integrals.
+pub(crate) const CHEBYSHEV_SHARE: f64 = 1.0 / 8.0;
+
+/// The share of a lobe that factors multiply.
+pub(crate) const FACTOR_SHARE: f64 = 0.01;
+
+/// The tolerance of the certificate's rule, in tolerances of the rule that it judges.
+pub(crate) const CERTIFY_RATIO: f64 = 0.1;
+
+/// The difference of both rules up to which a texel keeps its value.
+pub(crate) const KEPT_SHARE: f64 = 0.5;
+
+/// What a texel may reflect above the bound that its models promise.
+pub(crate) const ENERGY_SLACK: f64 = 2.0;
+
+/// The share that the layout search may use up at its test points.
+pub(crate) const LAYOUT_MARGIN: f64 = 0.98;
+
+/// The share of the table that the layout search takes for exact.
+pub(crate) const LAYOUT_REFERENCE_SHARE: f64 = 0.01;
 
 /// The finest tolerance that the tables of node counts know.
 pub(crate) const FINEST: f64 = 1e-10;
@@ -13,4 +90,18 @@ pub(crate) fn decade(tolerance: f64) -> usize {
 /// Whether a tolerance is beyond f32: from there on maps matter that converge longer.
 pub(crate) fn is_fine(tolerance: f64) -> bool {
     tolerance < 0.9e-6
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tolerance_is_finite_and_above_0() {
+        for value in [f64::NAN, f64::INFINITY, -1e-4, 0.0, -0.0] {
+            let why = Tolerance::new(value).unwrap_err().to_string();
+            assert!(why.contains("give a number above 0"), "{why}");
+        }
+        assert_eq!(Tolerance::new(1e-6).unwrap().get(), 1e-6);
+    }
 }

@@ -159,7 +159,7 @@ pub fn bake_set(
             // What is wrong with the table before is said before what is wrong with this one.
             let before = checking.take().map(|check: Checking| check.end(&mut stages)).transpose()?;
             let computed = computed?;
-            observer.begin(&format!("checking {}", table.name));
+            observer.begin(&format!("checking {}", table.name()));
             let check = move || {
                 let start = Instant::now();
                 let checked = computed.check(table, options.check, &|share| observer.advance(share));

@@ -42,14 +42,14 @@ pub struct Progress {
 impl Streaming {
     /// Whether it takes this table.
     pub(super) fn takes(&self, table: &TablePlan) -> bool {
-        table.can_stream() && table.texels() * table.channels.len() > self.above
+        table.can_stream() && table.texels() * table.channels().len() > self.above
     }
 
     /// The rows of each tile: a row is the last axis.
     fn tiles(&self, table: &TablePlan) -> Vec<Range<usize>> {
-        let width = table.axes.last().map_or(1, Axis::len);
+        let width = table.axes().last().map_or(1, Axis::len);
         let rows = table.texels() / width;
-        let per_tile = (self.tile / (4 * width * table.channels.len())).max(1);
+        let per_tile = (self.tile / (4 * width * table.channels().len())).max(1);
         (0..rows).step_by(per_tile).map(|first| first..(first + per_tile).min(rows)).collect()
     }
 }
@@ -57,9 +57,9 @@ impl Streaming {
 /// A name for everything that decides a tile's bytes. With any difference a bake starts over.
 pub(super) fn key(table: &TablePlan, scene: &str, device: &str, streaming: &Streaming) -> String {
     let shaders: String = table
-        .lobes
+        .lobes()
         .iter()
-        .map(|lobe| compose(Kernel::Values, Some(lobe.model), table.channels.len(), Precision::F32))
+        .map(|lobe| compose(Kernel::Values, Some(lobe.model()), table.channels().len(), Precision::F32))
         .collect();
     let version = env!("CARGO_PKG_VERSION");
     let all = format!("{version}\n{scene}\n{device}\n{streaming:?}\n{table:?}\n{shaders}");
@@ -81,11 +81,11 @@ pub(super) fn bake(
     stages: &mut Timings,
     observer: &dyn Observer,
 ) -> Result<(Table, Table)> {
-    observer.begin(&format!("baking {}", plan.name));
+    observer.begin(&format!("baking {}", plan.name()));
     let before = stages.dispatch + stages.readback;
     let ranges = options.streaming.tiles(plan);
-    let width = plan.axes.last().map_or(1, Axis::len);
-    let row = width * plan.channels.len();
+    let width = plan.axes().last().map_or(1, Axis::len);
+    let row = width * plan.channels().len();
     let estimate = evaluator.path(plan).estimate(plan);
     let unknown = Comparison::new(plan, options.check, None).finish();
     let mut pass = Pass {
@@ -191,12 +191,7 @@ impl Preview {
     }
 
     fn axes(&self, plan: &TablePlan) -> Vec<Axis> {
-        let axes = plan.axes.iter().zip(&self.chosen);
-        axes.map(|(axis, chosen)| Axis {
-            values: chosen.iter().map(|&k| axis.values[k]).collect(),
-            ..axis.clone()
-        })
-        .collect()
+        plan.axes().iter().zip(&self.chosen).map(|(axis, chosen)| axis.thinned(chosen)).collect()
     }
 
     /// Takes what it has chosen of whole rows.

@@ -11,14 +11,13 @@
 
 use crate::backend::cpu;
 use crate::base::error::Result;
+use crate::base::tolerance::Tolerance;
 use crate::check;
 use crate::check::Check;
 use crate::plan::TablePlan;
 use crate::table::axis::{Axis, Mapping, Positions, Variable};
 use crate::table::quantity::Evaluation;
 use crate::table::report::InterpolationError;
-use crate::table::rule::Rule;
-use crate::table::storage::Storage;
 use crate::table::{Values, indices};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -39,30 +38,30 @@ const MU: f64 = 1.0 / 256.0;
 const ROUGHNESS: f64 = 0.05;
 
 /// The tolerance of the fast f64 path, far below any that a bilinear look-up meets.
-const FINE: f64 = 1e-6;
+const FINE: Tolerance = Tolerance::known(1e-6);
 
 /// The error of `values`, the table of `plan`, as it is sampled bilinearly; `None` for values of f, for
 /// axes that are lists (no reader finds its place in them), and where nothing is to be checked.
 pub(crate) fn measure(plan: &TablePlan, values: &Values, check: Check) -> Result<Option<InterpolationError>> {
-    let known = plan.lobes.iter().all(|lobe| lobe.model.reference.is_some());
+    let known = plan.lobes().iter().all(|lobe| lobe.model().reference.is_some());
     if check == Check::Sample(0) || !known || !is_sampled(plan) {
         return Ok(None);
     }
-    let domain: Vec<_> = plan.axes.iter().map(|axis| promised(axis.variable, axis.range)).collect();
-    let coordinates: Vec<_> = plan.axes.iter().map(test_points).collect();
+    let domain: Vec<_> = plan.axes().iter().map(|axis| promised(axis.variable(), axis.range())).collect();
+    let coordinates: Vec<_> = plan.axes().iter().map(test_points).collect();
     let dense = Dense::new(plan, values, coordinates);
     let worst = dense.worst(&domain, SEARCHED);
     let mut places: Vec<_> = worst.iter().map(|&texel| dense.around(plan, values, &domain, texel)).collect();
     places.extend(check::sample(&dense.shape(), REFERENCED).into_iter().map(|texel| dense.at(texel)));
 
-    let channels = plan.channels.len();
+    let channels = plan.channels().len();
     let checked: Vec<_> = places
         .par_iter()
         .map(|at| {
             let point = fine(plan, at.iter().map(|&x| vec![x]).collect(), FINE);
             let fast = evaluate(&point);
             let truth = check::reference(&point, 0);
-            let read = look_up(&plan.axes, values, channels, at);
+            let read = look_up(plan.axes(), values, channels, at);
             (truth, fast, read)
         })
         .collect();
@@ -73,7 +72,7 @@ pub(crate) fn measure(plan: &TablePlan, values: &Values, check: Check) -> Result
             certified = f64::max(certified, or_infinite((truth[channel] - fast[channel]).abs()));
             let error = or_infinite((read[channel] - truth[channel]).abs());
             if inside && found.0.is_none_or(|max| error > max) {
-                let names = plan.axes.iter().map(|axis| axis.variable.name().to_string());
+                let names = plan.axes().iter().map(|axis| axis.variable().name().to_string());
                 let mut worst: BTreeMap<_, _> = names.zip(at.iter().copied()).collect();
                 worst.insert("channel".into(), channel as f64);
                 worst.insert("value".into(), read[channel]);
@@ -82,7 +81,7 @@ pub(crate) fn measure(plan: &TablePlan, values: &Values, check: Check) -> Result
             }
         }
     }
-    let names = plan.axes.iter().map(|axis| axis.variable.name().to_string());
+    let names = plan.axes().iter().map(|axis| axis.variable().name().to_string());
     Ok(Some(InterpolationError {
         kind: "bilinear",
         max: found.0,
@@ -101,28 +100,28 @@ const REFERENCED: usize = 56;
 
 /// The largest error in the promise's domain by the fast path alone: for plans, which are pure.
 pub(crate) fn largest(plan: &TablePlan, values: &Values) -> f64 {
-    let domain: Vec<_> = plan.axes.iter().map(|axis| promised(axis.variable, axis.range)).collect();
-    let dense = Dense::new(plan, values, plan.axes.iter().map(test_points).collect());
+    let domain: Vec<_> = plan.axes().iter().map(|axis| promised(axis.variable(), axis.range())).collect();
+    let dense = Dense::new(plan, values, plan.axes().iter().map(test_points).collect());
     dense.worst(&domain, 1).first().map_or(0.0, |&texel| dense.errors[texel])
 }
 
 /// Whether a reader can sample the table: an integral, over axes that a formula finds its place in.
 fn is_sampled(plan: &TablePlan) -> bool {
-    let found = |axis: &Axis| axis.len() == 1 || axis.positions != Positions::Values;
-    plan.quantity.evaluation != Evaluation::Value
-        && plan.axes.iter().all(found)
-        && plan.axes.iter().any(|axis| axis.len() > 1)
+    let found = |axis: &Axis| axis.len() == 1 || axis.positions() != Positions::Values;
+    plan.quantity().evaluation != Evaluation::Value
+        && plan.axes().iter().all(found)
+        && plan.axes().iter().any(|axis| axis.len() > 1)
 }
 
 /// What bilinear look-ups at x read between: the sample at or below, and the next one's weight.
 pub(crate) fn locate(axis: &Axis, x: f64) -> (usize, f64) {
-    let (n, [a, b]) = (axis.len(), axis.range);
+    let (n, [a, b]) = (axis.len(), axis.range());
     if n == 1 {
         return (0, 0.0);
     }
     let u = ((x - a) / (b - a)).clamp(0.0, 1.0);
-    let u = if axis.mapping == Mapping::Sqrt { u.sqrt() } else { u };
-    let place = match axis.positions {
+    let u = if axis.mapping() == Mapping::Sqrt { u.sqrt() } else { u };
+    let place = match axis.positions() {
         Positions::Centers => u * n as f64 - 0.5,
         _ => u * (n - 1) as f64,
     };
@@ -151,21 +150,9 @@ pub(crate) fn look_up(axes: &[Axis], values: &Values, channels: usize, at: &[f64
 }
 
 /// The same table in f64 by the fast path, over listed coordinates.
-pub(crate) fn fine(plan: &TablePlan, coordinates: Vec<Vec<f64>>, tolerance: f64) -> TablePlan {
-    let axes = plan.axes.iter().zip(coordinates).map(|(axis, values)| Axis {
-        positions: Positions::Values,
-        mapping: Mapping::Linear,
-        values,
-        ..axis.clone()
-    });
-    TablePlan {
-        axes: axes.collect(),
-        rule: Rule::Warped,
-        tolerance,
-        storage: Storage::F32,
-        bilinear: None,
-        ..plan.clone()
-    }
+pub(crate) fn fine(plan: &TablePlan, coordinates: Vec<Vec<f64>>, tolerance: Tolerance) -> TablePlan {
+    let axes = plan.axes().iter().zip(coordinates).map(|(axis, values)| axis.at_values(values));
+    plan.exact_at_samples(axes.collect(), tolerance)
 }
 
 /// The fast path: all cores, f64.
@@ -185,11 +172,11 @@ struct Dense {
 
 impl Dense {
     fn new(plan: &TablePlan, values: &Values, coordinates: Vec<Vec<f64>>) -> Self {
-        let channels = plan.channels.len();
+        let channels = plan.channels().len();
         let truth = evaluate(&fine(plan, coordinates.clone(), FINE));
         let mut dense = Self { coordinates, errors: vec![], squares: vec![], channels };
         for (texel, truth) in truth.chunks(channels).enumerate() {
-            let read = look_up(&plan.axes, values, channels, &dense.at(texel));
+            let read = look_up(plan.axes(), values, channels, &dense.at(texel));
             let errors = read.iter().zip(truth).map(|(a, b)| or_infinite((a - b).abs()));
             dense.errors.push(errors.clone().fold(0.0, f64::max));
             dense.squares.push(errors.map(|e| e * e).sum());
@@ -252,12 +239,12 @@ impl Dense {
 fn test_points(axis: &Axis) -> Vec<f64> {
     const ALL_OF: usize = 24;
     const CELLS: usize = 64;
-    let (n, [a, b]) = (axis.len(), axis.range);
+    let (n, [a, b]) = (axis.len(), axis.range());
     if n == 1 {
-        return axis.values.clone();
+        return axis.values().to_vec();
     }
     let kept = |k: usize| k < ALL_OF || k.is_multiple_of(n.div_ceil(CELLS)) || k + 2 >= n;
-    let middle = |x: f64, y: f64| match axis.mapping {
+    let middle = |x: f64, y: f64| match axis.mapping() {
         Mapping::Linear => 0.5 * (x + y),
         Mapping::Sqrt => {
             let u = 0.5 * (((x - a) / (b - a)).sqrt() + ((y - a) / (b - a)).sqrt());
@@ -265,11 +252,15 @@ fn test_points(axis: &Axis) -> Vec<f64> {
         }
     };
     let cells = (0..n).filter(|&k| kept(k)).flat_map(|k| {
-        let next = axis.values.get(k + 1).map(|&next| middle(axis.values[k], next));
-        std::iter::once(axis.values[k]).chain(next)
+        let next = axis.values().get(k + 1).map(|&next| middle(axis.values()[k], next));
+        std::iter::once(axis.values()[k]).chain(next)
     });
     sorted(
-        cells.chain([a, b]).chain(promised(axis.variable, [a, b])).filter(|x| (a..=b).contains(x)).collect(),
+        cells
+            .chain([a, b])
+            .chain(promised(axis.variable(), [a, b]))
+            .filter(|x| (a..=b).contains(x))
+            .collect(),
     )
 }
 

@@ -45,7 +45,7 @@ pub const VALUE_FLOOR: f64 = 1e-30;
 
 /// The same of a sum of lobes, some of which may lose their digits earlier.
 pub(crate) fn value_floor(lobes: &[Lobe]) -> f64 {
-    lobes.iter().filter_map(|lobe| lobe.model.faint()).fold(VALUE_FLOOR, f64::max)
+    lobes.iter().filter_map(|lobe| lobe.model().faint()).fold(VALUE_FLOOR, f64::max)
 }
 
 /// Compares `values` with the reference. A NaN anywhere makes the largest error infinite.
@@ -74,14 +74,14 @@ pub(crate) struct Comparison<'a> {
 
 impl<'a> Comparison<'a> {
     pub fn new(table: &'a TablePlan, check: Check, estimate: Option<f64>) -> Self {
-        let known = table.lobes.iter().all(|lobe| lobe.model.reference.is_some());
+        let known = table.lobes().iter().all(|lobe| lobe.model().reference.is_some());
         let sample = match check {
             _ if !known => Some(Vec::new()),
             Check::All => None,
             Check::Sample(n) => Some(sample(&table.shape(), n)),
         };
-        let kind = table.quantity.error;
-        let floor = (kind == ErrorKind::Relative).then(|| value_floor(&table.lobes));
+        let kind = table.quantity().error;
+        let floor = (kind == ErrorKind::Relative).then(|| value_floor(table.lobes()));
         let tally = Tally::new(TableError::unmeasured(kind, floor, estimate));
         Self { table, sample, tally }
     }
@@ -95,7 +95,7 @@ impl<'a> Comparison<'a> {
         tick: &(impl Fn(f64) -> Result<()> + Sync),
     ) -> Result<()> {
         let table = self.table;
-        let channels = table.channels.len();
+        let channels = table.channels().len();
         let (texels, all): (Vec<_>, _) = match &self.sample {
             None => (piece.clone().collect(), table.texels()),
             Some(sample) => {
@@ -115,7 +115,7 @@ impl<'a> Comparison<'a> {
                 Ok((texel, found))
             })
             .collect::<Result<Vec<_>>>()?;
-        found.into_iter().for_each(|(texel, found)| self.tally.add(&table.axes, texel, found));
+        found.into_iter().for_each(|(texel, found)| self.tally.add(table.axes(), texel, found));
         Ok(())
     }
 
@@ -153,7 +153,7 @@ impl Tally {
                 let shape: Vec<_> = axes.iter().map(Axis::len).collect();
                 let coordinates = axes.iter().zip(indices(&shape, texel));
                 error.worst =
-                    coordinates.map(|(axis, k)| (axis.variable.name().into(), axis.values[k])).collect();
+                    coordinates.map(|(axis, k)| (axis.variable().name().into(), axis.values()[k])).collect();
                 error.worst.insert("channel".into(), channel as f64);
                 error.worst.insert("value".into(), value);
                 error.worst.insert("reference".into(), truth);
@@ -173,15 +173,15 @@ impl Tally {
 /// The reference's channels of one texel. NaN where the reference has no value.
 pub fn reference(table: &TablePlan, texel: usize) -> Vec<f64> {
     let at: BTreeMap<_, _> = table
-        .axes
+        .axes()
         .iter()
         .zip(indices(&table.shape(), texel))
-        .map(|(axis, k)| (axis.variable, axis.values[k]))
+        .map(|(axis, k)| (axis.variable(), axis.values()[k]))
         .collect();
-    let mut channels = vec![0.0; table.channels.len()];
-    for lobe in &table.lobes {
-        let [a, b] = reference_lobe(table.quantity.evaluation, lobe, &at);
-        for (channel, [weight_a, weight_b]) in channels.iter_mut().zip(&lobe.weights) {
+    let mut channels = vec![0.0; table.channels().len()];
+    for lobe in table.lobes() {
+        let [a, b] = reference_lobe(table.quantity().evaluation, lobe, &at);
+        for (channel, [weight_a, weight_b]) in channels.iter_mut().zip(lobe.weights()) {
             *channel += weight_a * a + weight_b * b;
         }
     }
@@ -202,9 +202,10 @@ pub(crate) fn reference_angles(pair: &angles::Angles) -> Angles {
 
 /// f of a lobe by the reference at a pair of directions, before its weights; NaN where it has none.
 pub(crate) fn reference_of(lobe: &Lobe, angles: &angles::Angles) -> [f64; 2] {
-    let Some(reference) = lobe.model.reference else { return [f64::NAN; 2] };
-    let f = reference.brdf(&reference_angles(angles), &lobe.setting_at(None)).unwrap_or([f64::NAN; 2]);
-    if lobe.factors.is_empty() {
+    let Some(reference) = lobe.model().reference else { return [f64::NAN; 2] };
+    let Ok(setting) = lobe.setting_at(None) else { return [f64::NAN; 2] };
+    let f = reference.brdf(&reference_angles(angles), &setting).unwrap_or([f64::NAN; 2]);
+    if lobe.factors().is_empty() {
         return f;
     }
     let factor =
@@ -213,9 +214,9 @@ pub(crate) fn reference_of(lobe: &Lobe, angles: &angles::Angles) -> [f64; 2] {
 }
 
 fn reference_lobe(evaluation: Evaluation, lobe: &Lobe, at: &BTreeMap<Variable, f64>) -> [f64; 2] {
-    let Some(reference) = lobe.model.reference else { return [f64::NAN; 2] };
+    let Some(reference) = lobe.model().reference else { return [f64::NAN; 2] };
     let get = |variable| at.get(&variable).copied();
-    let setting = &lobe.setting_at(get(Variable::Roughness));
+    let Ok(setting) = &lobe.setting_at(get(Variable::Roughness)) else { return [f64::NAN; 2] };
     let theta_i = get(Variable::ThetaI).unwrap_or(0.0);
     let phi_i = get(Variable::PhiI).unwrap_or(0.0);
     let value = || {
@@ -227,7 +228,7 @@ fn reference_lobe(evaluation: Evaluation, lobe: &Lobe, at: &BTreeMap<Variable, f
         let f = reference.brdf(&Angles { theta_i, theta_e, delta_phi, phi_i }, setting);
         (f.unwrap_or([f64::NAN; 2]), theta_e)
     };
-    if lobe.factors.is_empty() {
+    if lobe.factors().is_empty() {
         return match evaluation {
             Evaluation::Value => value().0,
             Evaluation::Directional => {
@@ -304,7 +305,7 @@ mod tests {
         values[17] = 1.001;
         let error = check(&values);
         assert!((error.measured_max.unwrap() - 1e-3).abs() < 1e-6);
-        assert_eq!(error.worst["theta_i"], table.axes[0].values[17]);
+        assert_eq!(error.worst["theta_i"], table.axes()[0].values()[17]);
         values[17] = f32::NAN;
         assert_eq!(check(&values).measured_max, Some(f64::INFINITY));
     }

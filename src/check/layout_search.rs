@@ -7,8 +7,9 @@
 //! the rounded table really has, and the winner is measured between all of its samples.
 
 use crate::base::error::{Error, Result};
+use crate::base::tolerance::{LAYOUT_MARGIN, LAYOUT_REFERENCE_SHARE, Tolerance, UNORM_RULE};
 use crate::check::bilinear::{evaluate, fine, largest, locate, look_up, promised};
-use crate::plan::{TablePlan, UNORM_RULE};
+use crate::plan::TablePlan;
 use crate::table::axis::{Axis, Mapping, Positions, Variable};
 use crate::table::report::{Choice, Layout};
 use crate::table::storage::Storage;
@@ -30,17 +31,20 @@ pub(crate) fn optimise(table: TablePlan, auto: &[Variable], storage: Option<Stor
         Error::input(format!(
             "table \"{}\": no size of its auto axes up to {MOST} meets {:e} bilinearly; allow more, narrow the range, or \
              give its other axis more samples",
-            table.name, table.tolerance
+            table.name(), table.tolerance()
         ))
     })?;
-    let usual: usize =
-        table.axes.iter().map(|axis| if auto.contains(&axis.variable) { 128 } else { axis.len() }).product();
+    let usual: usize = table
+        .axes()
+        .iter()
+        .map(|axis| if auto.contains(&axis.variable()) { 128 } else { axis.len() })
+        .product();
     let choice = Choice {
         runner_up: found.next().map(|next| next.layout()),
-        usual_bytes: usual * table.channels.len() * Storage::F16.bytes(),
+        usual_bytes: usual * table.channels().len() * Storage::F16.bytes(),
         chosen: chosen.layout(),
     };
-    Ok(TablePlan { axes: chosen.axes, storage: chosen.storage, bilinear: Some(choice), ..table })
+    table.with_layout(chosen.axes, chosen.storage, choice)
 }
 
 /// The longest axis that is tried.
@@ -51,12 +55,10 @@ const SHORTLIST: usize = 3;
 const TESTS: usize = 65;
 /// Sizes at which the errors of single axes are tabulated.
 const SIZES: [usize; 3] = [24, 64, 160];
-/// What the search leaves for what lies between its test points.
-const MARGIN: f64 = 0.98;
 
 /// The tolerance of the search's own integrals.
-fn rough(table: &TablePlan) -> f64 {
-    (0.01 * table.tolerance).min(UNORM_RULE)
+fn rough(table: &TablePlan) -> Tolerance {
+    Tolerance::known((LAYOUT_REFERENCE_SHARE * table.tolerance()).min(UNORM_RULE))
 }
 
 /// An axis but for its size.
@@ -84,14 +86,14 @@ struct Found {
 impl Found {
     fn layout(&self) -> Layout {
         let axes = self.axes.iter().map(|axis| {
-            let mapping = if axis.mapping == Mapping::Sqrt { "sqrt" } else { "linear" };
-            let positions = match axis.positions {
+            let mapping = if axis.mapping() == Mapping::Sqrt { "sqrt" } else { "linear" };
+            let positions = match axis.positions() {
                 Positions::Nodes => "nodes",
                 Positions::Centers => "centers",
                 Positions::Values => "values",
             };
-            let [a, b] = axis.range;
-            format!("{} {mapping} {positions} [{a:.4}, {b:.4}] × {}", axis.variable.name(), axis.len())
+            let [a, b] = axis.range();
+            format!("{} {mapping} {positions} [{a:.4}, {b:.4}] × {}", axis.variable().name(), axis.len())
         });
         Layout { axes: axes.collect(), storage: self.storage, bytes: self.bytes, error: self.error }
     }
@@ -127,12 +129,12 @@ struct Search<'a> {
 
 impl<'a> Search<'a> {
     fn new(table: &'a TablePlan, auto: &[Variable], storage: Option<Storage>) -> Self {
-        let auto = (0..table.axes.len()).filter(|&k| auto.contains(&table.axes[k].variable)).collect();
+        let auto = (0..table.axes().len()).filter(|&k| auto.contains(&table.axes()[k].variable())).collect();
         let tests: Vec<_> = table
-            .axes
+            .axes()
             .iter()
             .map(|axis| {
-                let [a, b] = promised(axis.variable, axis.range);
+                let [a, b] = promised(axis.variable(), axis.range());
                 let a = a.min(b);
                 // Denser where ρ turns: at the lower end.
                 let tests = |n: usize| (0..n).map(move |k| a + (b - a) * (k as f64 / (n - 1) as f64).powi(2));
@@ -144,7 +146,7 @@ impl<'a> Search<'a> {
         // help where the rounding of two is felt.
         let fits = |&value: &f64| (0.0..=1.0).contains(&Storage::Unorm16.round(value));
         let narrow = if truth.iter().all(fits) { Storage::Unorm16 } else { Storage::F16 };
-        let felt = narrow.rounding(ErrorKind::Absolute) > 0.05 * table.tolerance;
+        let felt = narrow.rounding(ErrorKind::Absolute) > 0.05 * table.tolerance();
         let storages = match storage {
             Some(storage) => vec![storage],
             None if felt => vec![narrow, Storage::F32],
@@ -157,7 +159,7 @@ impl<'a> Search<'a> {
     }
 
     fn curves_of(&self, k: usize) -> Vec<Curve> {
-        let Axis { variable, range, .. } = self.table.axes[k];
+        let (variable, range) = (self.table.axes()[k].variable(), self.table.axes()[k].range());
         let promise = promised(variable, range);
         let mut ranges = vec![range];
         if promise != range && promise[0] < promise[1] {
@@ -183,13 +185,13 @@ impl<'a> Search<'a> {
         // Every other test will do for the ranking.
         for (j, tests) in coordinates.iter_mut().enumerate() {
             if j == k {
-                tests.clone_from(&axis.values);
+                *tests = axis.values().to_vec();
             } else {
                 *tests = tests.iter().copied().step_by(COARSE).collect();
             }
         }
         let shape: Vec<_> = coordinates.iter().map(Vec::len).collect();
-        let channels = self.table.channels.len();
+        let channels = self.table.channels().len();
         let values = evaluate(&fine(self.table, coordinates, rough(self.table)));
         let all: Vec<_> = self.tests.iter().map(Vec::len).collect();
         let mut largest = 0.0;
@@ -230,7 +232,7 @@ impl<'a> Search<'a> {
 
     /// The fewest texels by the bound, and the size of the first axis there.
     fn least(&self, curves: &[Curve]) -> Option<(usize, usize)> {
-        let room = MARGIN * self.table.tolerance;
+        let room = LAYOUT_MARGIN * self.table.tolerance();
         let smallest = |curve: &Curve, room: f64| (2..=2 * MOST).find(|&n| curve.at(n) <= room);
         match curves {
             [only] => smallest(only, room).map(|n| (n, n)),
@@ -248,7 +250,7 @@ impl<'a> Search<'a> {
         let (texels, first) = self.least(curves)?;
         // Formats in the order of their bytes: the first that any size meets the tolerance in.
         self.storages.iter().find_map(|&storage| {
-            if storage.rounding(ErrorKind::Absolute) > 0.5 * self.table.tolerance {
+            if storage.rounding(ErrorKind::Absolute) > 0.5 * self.table.tolerance() {
                 return None;
             }
             let found = match curves {
@@ -270,12 +272,12 @@ impl<'a> Search<'a> {
     /// The shortest last axis, about as long as the bound has it, with which the table meets the tolerance.
     fn shortest(&self, storage: Storage, first: &[Axis], last: AxisOption, bound: usize) -> Option<Found> {
         let found = |n: usize| {
-            let mut axes = self.table.axes.clone();
+            let mut axes = self.table.axes().to_vec();
             let chosen = first.iter().cloned().chain(last.axis(n));
             self.auto.iter().zip(chosen).for_each(|(&k, axis)| axes[k] = axis);
             self.found(axes, storage)
         };
-        let room = MARGIN * self.table.tolerance;
+        let room = LAYOUT_MARGIN * self.table.tolerance();
         let (mut low, mut high) = ((bound / 2).max(1), (bound * 5 / 4 + 2).min(MOST));
         let mut best = loop {
             match found(high).filter(|found| found.error <= room) {
@@ -296,9 +298,9 @@ impl<'a> Search<'a> {
 
     /// A table with these axes, its error at the test points; `None` where its values do not fit.
     fn found(&self, axes: Vec<Axis>, storage: Storage) -> Option<Found> {
-        let nodes = axes.iter().map(|axis| axis.values.clone()).collect();
+        let nodes = axes.iter().map(|axis| axis.values().to_vec()).collect();
         let plan = fine(self.table, nodes, rough(self.table));
-        let channels = self.table.channels.len();
+        let channels = self.table.channels().len();
         let values = Values::F64(evaluate(&plan));
         let values = storage.store(values, ErrorKind::Absolute).ok()?.values;
         let shape: Vec<_> = self.tests.iter().map(Vec::len).collect();
@@ -316,19 +318,17 @@ impl<'a> Search<'a> {
     fn confirmed(&self, mut found: Found) -> Option<Found> {
         const TRIES: usize = 6;
         for _ in 0..TRIES {
-            let plan = TablePlan { axes: found.axes.clone(), ..self.table.clone() };
-            let nodes = found.axes.iter().map(|axis| axis.values.clone()).collect();
+            let plan = self.table.at_samples(found.axes.clone());
+            let nodes = found.axes.iter().map(|axis| axis.values().to_vec()).collect();
             let nodes = fine(&plan, nodes, rough(&plan));
             let values = found.storage.store(Values::F64(evaluate(&nodes)), ErrorKind::Absolute).ok()?.values;
             found.error = largest(&plan, &values);
-            if found.error <= CONFIRMED * self.table.tolerance {
+            if found.error <= CONFIRMED * self.table.tolerance() {
                 return Some(found);
             }
             let mut axes = found.axes;
             for &k in &self.auto {
-                let Axis { variable, mapping, positions, range, .. } = axes[k];
-                let longer = AxisOption { variable, mapping, positions, range }.axis(axes[k].len() + 1)?;
-                axes[k] = longer;
+                axes[k] = axes[k].with_count(axes[k].len() + 1).ok()?;
             }
             found = self.found(axes, found.storage)?;
         }

@@ -178,18 +178,18 @@ fn plan_json(plan: &Plan) -> serde_json::Value {
         .iter()
         .map(|t| {
             json!({
-                "name": t.name,
-                "quantity": t.quantity.name,
-                "subject": t.subject,
-                "axes": t.axes.iter().map(|a| json!({
-                    "name": a.variable.name(), "count": a.len(), "range": a.range,
-                    "positions": a.positions, "mapping": a.mapping,
+                "name": t.name(),
+                "quantity": t.quantity().name,
+                "subject": t.subject(),
+                "axes": t.axes().iter().map(|a| json!({
+                    "name": a.variable().name(), "count": a.len(), "range": a.range(),
+                    "positions": a.positions(), "mapping": a.mapping(),
                 })).collect::<Vec<_>>(),
-                "channels": t.channels,
-                "rule": t.rule.to_string(),
-                "tolerance": t.tolerance,
-                "storage": t.storage,
-                "bilinear": t.bilinear,
+                "channels": t.channels(),
+                "rule": t.rule().to_string(),
+                "tolerance": t.tolerance(),
+                "storage": t.storage(),
+                "bilinear": t.bilinear(),
             })
         })
         .collect();

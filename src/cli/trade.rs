@@ -105,7 +105,7 @@ fn table(args: &Args) -> Result<TablePlan> {
     };
     let selection = Selection { quantity: args.quantity.clone(), ..Selection::default() };
     let plan = Plan::new(&scene::read(path)?, &selection)?;
-    let integral = |table: &TablePlan| table.quantity.evaluation != Evaluation::Value;
+    let integral = |table: &TablePlan| table.quantity().evaluation != Evaluation::Value;
     plan.tables.into_iter().find(integral).ok_or_else(|| {
         Error::input(format!(
             "{}: no table of integrals; give one of rho_dh, rho_hh or split_sum",

@@ -95,7 +95,7 @@ impl Portrait {
         let Sitter { label, scene, material } = sitter;
         let lobes = constant_lobes(scene.material(material)?)
             .map_err(|why| Error::input(format!("{material}: {why}")))?;
-        let unbounded = lobes.iter().find_map(|lobe| match lobe.model.integral {
+        let unbounded = lobes.iter().find_map(|lobe| match lobe.model().integral {
             Integral::Unbounded(why) => Some(why),
             _ => None,
         });
@@ -114,7 +114,7 @@ impl Portrait {
 }
 
 fn is_delta(lobe: &Lobe) -> bool {
-    lobe.model.is_delta_at(lobe.roughness.unwrap_or(0.0))
+    lobe.is_delta()
 }
 
 impl Reflectance {
@@ -136,7 +136,7 @@ impl Reflectance {
         Ok(Self {
             values,
             measured: table.error.measured_max,
-            tolerance: plan.tolerance,
+            tolerance: plan.tolerance(),
             precision: table.precision,
         })
     }

@@ -238,8 +238,8 @@ fn missing(model: &'static Model, setting: &Setting, mus: Vec<f64>) -> Vec<f64> 
         let roughness = model.shape.map(|shape| shape.roughness(setting.alpha));
         let axes = vec![Axis::listed(Variable::Mu, mus)?];
         let plan = TablePlan::basis("E", &SPLIT_SUM, model, roughness, axes)?;
-        let plan = plan.with_places(setting.parameters).with_tolerance(FINEST);
-        let lobe = &plan.lobes[0];
+        let plan = plan.with_places(setting.parameters)?.with_tolerance(FINEST)?;
+        let lobe = &plan.lobes()[0];
         let work = Work::new(&plan, lobe);
         let WorkKind::Integrals { inner, outer } = &work.kind else { return Ok(vec![f64::NAN; count]) };
         let Ok(texels) = evaluate::texels(&work, inner, outer, lobe, &|_| Ok::<_, Infallible>(()));

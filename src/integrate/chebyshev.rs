@@ -11,6 +11,7 @@
 //! asks for, with δ the best of a few. Values so near 0 that to reach them would take more points than there are of
 //! them are sources themselves.
 
+use crate::base::tolerance::CHEBYSHEV_SHARE;
 use crate::model::Branches;
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
@@ -30,8 +31,6 @@ pub(crate) struct Matrix {
     pub values: Vec<f64>,
 }
 
-/// The error of each axis, as a share of the tolerance: the rule and rounding take the rest.
-const SHARE: f64 = 1.0 / 8.0;
 /// More sources than this share of the values do not pay.
 const PAYS: f64 = 0.7;
 /// Below it, roughness is the mirror's (α = 1e-12), and to interpolate from there means nothing.
@@ -82,7 +81,14 @@ impl Spread {
         let first = sorted.partition_point(|&value| value < SMALLEST);
         let splits = KEPT.iter().map(|k| first + k).filter(|&k| k < sorted.len());
         let of = |kept: usize| {
-            (kept, Polynomial::new([sorted[kept], largest], points, (strength / (SHARE * tolerance)).ln()))
+            (
+                kept,
+                Polynomial::new(
+                    [sorted[kept], largest],
+                    points,
+                    (strength / (CHEBYSHEV_SHARE * tolerance)).ln(),
+                ),
+            )
         };
         let (kept, polynomial) = splits.map(of).min_by_key(|(kept, p)| kept + p.n)?;
         let kept = &sorted[..kept];
@@ -315,7 +321,7 @@ mod tests {
                     let Some((error, counts)) = error(model, &roughness, &mus, tolerance) else { continue };
                     let model = model.name;
                     assert!(
-                        error <= SHARE * tolerance,
+                        error <= CHEBYSHEV_SHARE * tolerance,
                         "{model}, {name} {counts:?}: {error:.1e} to {tolerance:e}"
                     );
                 }
@@ -335,7 +341,7 @@ mod tests {
                     let Some((error, [rows, columns])) = error(model, &roughness, &mus, tolerance) else {
                         continue;
                     };
-                    let share = error / (SHARE * tolerance);
+                    let share = error / (CHEBYSHEV_SHARE * tolerance);
                     println!(
                         "{}, {name}: 1e-{decade} by {rows} × {columns}, {share:.2} of the share",
                         model.name

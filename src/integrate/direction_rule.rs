@@ -1,7 +1,7 @@
 //! Integrals by directions that the host finds, each texel its own: whatever a lobe's shape, its model says where it
 //! lives. For models that no kernel with a map of its own is worth: a direction takes 100 ns here.
 
-use crate::base::tolerance::FINEST;
+use crate::base::tolerance::{FACTOR_SHARE, FINEST};
 use crate::integrate::product_rule::Nodes;
 use crate::integrate::scale::Scale;
 use crate::model::directions::{Fixed, Map, Sample};
@@ -44,7 +44,7 @@ impl MappedWork {
     /// The same of a lobe times factors.
     pub fn times(self, scales: Vec<Scale>, fixed_is_exitant: bool) -> Self {
         // The counts of a map are for its lobe alone: at α = 1 a restored one is off by 9e-6 where 1e-6 is asked for.
-        let tolerance = (0.01 * self.tolerance).max(FINEST);
+        let tolerance = (FACTOR_SHARE * self.tolerance).max(FINEST);
         Self { scales, fixed_is_exitant, tolerance, ..self }
     }
 

@@ -70,14 +70,14 @@ fn integrate(work: &Work, inner: &Inner, lobe: &Lobe, row: usize, k: usize) -> [
         Inner::Samples(work) => return work.sum(row, k, setting),
         Inner::Product { pairs, azimuths } => {
             for azimuth in azimuths {
-                add(pairs[k].weight * azimuth.weight, (lobe.model.lobe)(&pairs[k], azimuth, setting));
+                add(pairs[k].weight * azimuth.weight, (lobe.model().lobe)(&pairs[k], azimuth, setting));
             }
         }
         Inner::Mapped(work) => match work.texel(row * work.fixed.len() + k) {
             Texel::Limit(limit) => return limit,
             Texel::Samples(samples) => {
                 for Sample { pair, azimuth, weight } in &samples {
-                    add(*weight, (lobe.model.lobe)(pair, azimuth, setting));
+                    add(*weight, (lobe.model().lobe)(pair, azimuth, setting));
                 }
             }
         },

@@ -4,7 +4,7 @@
 use crate::base::angles::delta_phi;
 use crate::base::half_angle::{Azimuth, MU_MIN, Pair, off_horizon};
 use crate::base::quadrature::{Node, gauss_legendre, midpoint};
-use crate::base::tolerance::decade;
+use crate::base::tolerance::{FACTOR_SHARE, decade};
 use crate::integrate::chebyshev::{LARGEST, Matrix, Spread};
 use crate::integrate::direction_rule::{MappedWork, Source};
 use crate::integrate::product_rule::Nodes;
@@ -91,19 +91,19 @@ impl Work {
     /// The work of `lobe` in `table`.
     pub fn new(table: &TablePlan, lobe: &Lobe) -> Self {
         let alphas = table.alphas(lobe);
-        match table.quantity.evaluation {
+        match table.quantity().evaluation {
             Evaluation::Value => Self { alphas, scales: scales(table, lobe), kind: values(table) },
             Evaluation::Directional => integrals(table, lobe, alphas, &directions(table), &[1.0]),
             Evaluation::Hemispherical => {
                 let tolerance = table.rule_tolerance();
                 let settings = lobe.settings(&alphas);
                 let more =
-                    |s: &Setting| lobe.model.microfacet.map_or(0, |made| (made.mean_nodes)(s, tolerance));
+                    |s: &Setting| lobe.model().microfacet.map_or(0, |made| (made.mean_nodes)(s, tolerance));
                 let more = settings.iter().map(more).max().unwrap_or(0);
                 // A factor turns ρ where the lobe alone does not: of a restored lobe 16 nodes leave 9e-6.
-                let share = if lobe.factors.is_empty() { 1.0 } else { 0.01 };
+                let share = if lobe.factors().is_empty() { 1.0 } else { FACTOR_SHARE };
                 let nodes = gauss_legendre(MEAN_NODES[decade(share * tolerance)] + more);
-                let [thetas, weights]: [Vec<_>; 2] = match lobe.model.integral {
+                let [thetas, weights]: [Vec<_>; 2] = match lobe.model().integral {
                     // ρ_hh = ∫ ρ sin 2θ dθ: a kink at θe = θi leaves odd powers of sin θ in ρ.
                     Integral::Kinked(_) => {
                         let thetas: Vec<_> = nodes.iter().map(|node| FRAC_PI_2 * node.x).collect();
@@ -121,7 +121,7 @@ impl Work {
                     ],
                 };
                 // The mean over a quarter of a turn, which the others mirror.
-                let azimuths = match lobe.model.is_anisotropic() {
+                let azimuths = match lobe.model().is_anisotropic() {
                     true => gauss_legendre(MEAN_NODES[decade(table.rule_tolerance())]),
                     false => vec![Node { x: 0.0, weight: 1.0 }],
                 };
@@ -187,15 +187,15 @@ impl Inner {
 /// (θ, φ) of the fixed direction along the table's last axes.
 fn directions(table: &TablePlan) -> Vec<[f64; 2]> {
     let thetas: Vec<_> = match table.axis(Variable::Mu) {
-        Some(axis) => axis.values.iter().map(|mu| mu.acos()).collect(),
-        None => table.axis(Variable::ThetaI).map_or(Vec::new(), |axis| axis.values.clone()),
+        Some(axis) => axis.values().iter().map(|mu| mu.acos()).collect(),
+        None => table.axis(Variable::ThetaI).map_or(Vec::new(), |axis| axis.values().to_vec()),
     };
-    let phis = table.axis(Variable::PhiI).map_or(&[0.0][..], |axis| &axis.values);
+    let phis = table.axis(Variable::PhiI).map_or(&[0.0][..], |axis| axis.values());
     thetas.into_iter().flat_map(|theta| phis.iter().map(move |&phi| [theta, phi])).collect()
 }
 
 fn values(table: &TablePlan) -> WorkKind {
-    let of = |variable| table.axis(variable).map_or(&[][..], |axis| &axis.values);
+    let of = |variable| table.axis(variable).map_or(&[][..], |axis| axis.values());
     let (theta_i, theta_e) = (of(Variable::ThetaI), of(Variable::ThetaE));
     let pairs = theta_i.iter().flat_map(|&i| theta_e.iter().map(move |&e| Pair::new(i, e))).collect();
     let frames = match table.axis(Variable::PhiI) {
@@ -203,7 +203,7 @@ fn values(table: &TablePlan) -> WorkKind {
         Some(phi_i) => {
             let azimuth = |phi_i, phi_e| Azimuth::at(phi_i, delta_phi(phi_i, phi_e));
             let frame = |&i: &f64| of(Variable::PhiE).iter().map(|&e| azimuth(i, e)).collect();
-            phi_i.values.iter().map(frame).collect()
+            phi_i.values().iter().map(frame).collect()
         }
     };
     WorkKind::Values(ValueWork { pairs, thetas_e: theta_e.len(), frames })
@@ -237,7 +237,7 @@ fn integrals(table: &TablePlan, lobe: &Lobe, alphas: Vec<f64>, fixed: &[[f64; 2]
         let outer = weights.iter().flat_map(|w| chunks.clone().map(move |c| w * c)).collect();
         of(Inner::Samples(work), outer)
     };
-    let sampler = match table.rule {
+    let sampler = match table.rule() {
         Rule::Hammersley { samples } => Some((Sampler::Ndf, samples)),
         Rule::Vndf { samples } => Some((Sampler::Vndf, samples)),
         Rule::Random { samples } => Some((Sampler::Random, samples)),
@@ -245,7 +245,7 @@ fn integrals(table: &TablePlan, lobe: &Lobe, alphas: Vec<f64>, fixed: &[[f64; 2]
     };
     let new = |alphas, kind| Work { alphas, scales: Vec::new(), kind };
     let mapped = |source: Source| {
-        let factored = !lobe.factors.is_empty();
+        let factored = !lobe.factors().is_empty();
         let fixed = mus()
             .into_iter()
             .zip(fixed)
@@ -254,8 +254,8 @@ fn integrals(table: &TablePlan, lobe: &Lobe, alphas: Vec<f64>, fixed: &[[f64; 2]
         MappedWork::new(source, fixed, lobe.settings(&alphas), table.rule_tolerance())
     };
     // The plan refuses other rules for lobes with factors.
-    if !lobe.factors.is_empty() {
-        let source = match lobe.model.integral {
+    if !lobe.factors().is_empty() {
+        let source = match lobe.model().integral {
             Integral::Slopes(slopes) => Source::Map(slopes.map),
             Integral::Mapped(map) => Source::Map(map),
             Integral::Smooth(counts) => Source::Product(Nodes { counts, kinked: false }),
@@ -264,16 +264,16 @@ fn integrals(table: &TablePlan, lobe: &Lobe, alphas: Vec<f64>, fixed: &[[f64; 2]
             Integral::Unbounded(_) => Source::Delta(|_, _| [f64::NAN; 2]),
         };
         // Of the split sum it is ωe that is fixed.
-        let fixed_is_exitant = table.quantity.variables == [Variable::Mu];
+        let fixed_is_exitant = table.quantity().variables == [Variable::Mu];
         let work = mapped(source).times(scales(table, lobe), fixed_is_exitant);
         return new(alphas, of(Inner::Mapped(work), weights.to_vec()));
     }
-    if let (Some((sampler, samples)), Integral::Slopes(slopes)) = (sampler, lobe.model.integral)
+    if let (Some((sampler, samples)), Integral::Slopes(slopes)) = (sampler, lobe.model().integral)
         && let Some(by) = &slopes.sampling
     {
         return new(alphas, sampled(sampler, slopes, by, samples));
     }
-    let kind = match (table.rule, lobe.model.integral) {
+    let kind = match (table.rule(), lobe.model().integral) {
         (Rule::Gauss { theta, phi }, _) => smooth(gauss_cells(theta), gauss_azimuths(phi)),
         (Rule::Grid { theta, phi }, _) => smooth(grid_cells(theta), grid_azimuths(phi)),
         // The plan refuses the sampling rules for lobes without samplers.

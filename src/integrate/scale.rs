@@ -101,17 +101,17 @@ fn coat(mu: f64) -> f64 {
 
 /// The factors of a lobe in each row of a table; empty where it has none.
 pub(crate) fn scales(table: &TablePlan, lobe: &Lobe) -> Vec<Scale> {
-    if lobe.factors.is_empty() {
+    if lobe.factors().is_empty() {
         return Vec::new();
     }
     let rows: Vec<_> = match table.axis(Variable::Roughness) {
-        Some(axis) => axis.values.iter().map(|&roughness| Some(roughness)).collect(),
-        None => vec![lobe.roughness],
+        Some(axis) => axis.values().iter().map(|&roughness| Some(roughness)).collect(),
+        None => vec![lobe.roughness()],
     };
-    rows.into_par_iter().map(|row| Scale::new(&lobe.factors, row)).collect()
+    rows.into_par_iter().map(|row| Scale::new(lobe.factors(), row)).collect()
 }
 
 /// The relative error that factors add to a table's values.
 pub(crate) fn factor_error(table: &TablePlan) -> f64 {
-    table.lobes.iter().flat_map(|lobe| scales(table, lobe)).map(|scale| scale.error()).fold(0.0, f64::max)
+    table.lobes().iter().flat_map(|lobe| scales(table, lobe)).map(|scale| scale.error()).fold(0.0, f64::max)
 }

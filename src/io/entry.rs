@@ -73,7 +73,8 @@ pub(super) fn axes(table: &Table) -> Vec<AxisEntry<'_>> {
 
 impl<'a> AxisEntry<'a> {
     fn new(axis: &'a Axis) -> Self {
-        let Axis { variable, mapping, positions, range, ref values } = *axis;
+        let (variable, mapping, positions, range, values) =
+            (axis.variable(), axis.mapping(), axis.positions(), axis.range(), axis.values());
         Self { name: variable.name(), unit: variable.unit(), mapping, positions, range, values }
     }
 }

@@ -121,7 +121,7 @@ fn describe(table: &Table) -> serde_json::Result<BTreeMap<String, String>> {
 
 /// How to read the image, for a person who opens it in a viewer.
 fn in_words(table: &Table) -> String {
-    let axis = |axis: &crate::table::axis::Axis| format!("{} ({})", axis.variable.name(), axis.len());
+    let axis = |axis: &crate::table::axis::Axis| format!("{} ({})", axis.variable().name(), axis.len());
     let axes: Vec<_> = table.axes.iter().map(axis).collect();
     format!(
         "{} of {}, unit {}. Axes, slowest first: {}. Width is the last axis, height the product of the \

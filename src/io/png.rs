@@ -54,13 +54,13 @@ fn lines(table: &Table, x: usize) -> Result<Vec<u8>> {
     ticks_below(&mut canvas, frame, &scale_x, true);
     ticks_left(&mut canvas, frame, &scale_y, true);
     canvas.border(frame, GREY);
-    axis_labels(&mut canvas, frame, &scale::label(axis.variable), &quantity(table));
+    axis_labels(&mut canvas, frame, &scale::label(axis.variable()), &quantity(table));
 
     for (c, channel) in table.channels.iter().enumerate() {
         let color = line_color(channel, c);
         let at = |texel: usize| {
             let v = scale_y.at(table.value(texel, c)).clamp(0.0, 1.0) as f32;
-            (frame.x + frame.w * scale_x.at(axis.values[texel]) as f32, frame.y + frame.h * (1.0 - v))
+            (frame.x + frame.w * scale_x.at(axis.values()[texel]) as f32, frame.y + frame.h * (1.0 - v))
         };
         let points: Vec<_> = (0..axis.len()).map(at).collect();
         canvas.line(&points, 2.0, color);
@@ -97,7 +97,7 @@ fn maps(table: &Table, x: usize, y: usize) -> Result<Vec<u8>> {
         heat_map(&mut canvas, frame, &slice, &scale);
         ticks_below(&mut canvas, frame, &Scale::of_axis(&table.axes[x]), false);
         ticks_left(&mut canvas, frame, &Scale::of_axis(&table.axes[y]), false);
-        let [label_x, label_y] = [x, y].map(|axis| scale::label(table.axes[axis].variable));
+        let [label_x, label_y] = [x, y].map(|axis| scale::label(table.axes[axis].variable()));
         axis_labels(&mut canvas, frame, &label_x, &label_y);
         let name = canvas.fit(&table.channels[c], LABEL_SIZE, side);
         canvas.text(&name, (frame.x + side / 2.0, frame.y - 16.0), LABEL_SIZE, Align::Center, BLACK);
@@ -129,7 +129,7 @@ fn multiples(table: &Table, slow: &[usize], x: usize, y: usize) -> Result<Vec<u8
     let mut at = vec![0; table.axes.len()];
     for &k in fixed {
         at[k] = table.axes[k].len() / 2;
-        let place = scale::in_words(table.axes[k].variable, table.axes[k].values[at[k]]);
+        let place = scale::in_words(table.axes[k].variable(), table.axes[k].values()[at[k]]);
         notes.push(format!("slice at {place}"));
     }
     let chosen: Vec<_> = match (spread, shown.len()) {
@@ -166,7 +166,7 @@ fn multiples(table: &Table, slow: &[usize], x: usize, y: usize) -> Result<Vec<u8
         heat_map(&mut canvas, frame, panel, &scale);
         let heading = canvas.fit(&panel.heading(spread), TICK_SIZE, w);
         canvas.text(&heading, (frame.x + w / 2.0, frame.y - 15.0), TICK_SIZE, Align::Center, BLACK);
-        let [label_x, label_y] = [x, y].map(|axis| scale::label(table.axes[axis].variable));
+        let [label_x, label_y] = [x, y].map(|axis| scale::label(table.axes[axis].variable()));
         if column == 0 {
             ticks_left(&mut canvas, frame, &Scale::of_axis(&table.axes[y]), false);
             axis_labels(&mut canvas, frame, "", &label_y);
@@ -185,7 +185,7 @@ fn multiples(table: &Table, slow: &[usize], x: usize, y: usize) -> Result<Vec<u8
 /// before their end: at grazing, values diverge and would take the whole colour scale.
 fn choose(axis: &Axis, count: usize) -> Vec<usize> {
     let last = axis.len() - 1;
-    let steps = if axis.variable.name().starts_with("theta") { count } else { count - 1 };
+    let steps = if axis.variable().name().starts_with("theta") { count } else { count - 1 };
     let mut chosen: Vec<_> = (0..count).map(|k| (last * k + steps / 2) / steps).collect();
     chosen.dedup();
     chosen
@@ -201,7 +201,7 @@ fn header(canvas: &mut Canvas, table: &Table, notes: &[String]) {
     let parameters =
         table.parameters.iter().map(|(name, &value)| format!("{name} = {}", scale::short(value)));
     let single = table.axes.iter().filter(|axis| axis.len() == 1);
-    let single = single.map(|axis| scale::in_words(axis.variable, axis.values[0]));
+    let single = single.map(|axis| scale::in_words(axis.variable(), axis.values()[0]));
     let notes: Vec<_> = parameters.chain(single).chain(notes.iter().cloned()).collect();
 
     let error = &table.error;

@@ -22,7 +22,7 @@ pub(crate) mod slope_azimuths;
 
 pub use fresnel::metals::{METALS, Metal};
 pub use microfacet::{FRESNELS, MASKINGS, MICROFACETS, MIRRORS, Microfacet};
-pub use roughness::{Parameter, Shape};
+pub use roughness::{Parameter, Roughness, Shape};
 
 use crate::base::error::{Error, Result};
 use crate::base::half_angle::{Azimuth, Pair};

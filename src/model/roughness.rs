@@ -1,9 +1,32 @@
 //! What models take beside the weights of their components: a roughness, and numbers of their own.
 
+use crate::base::error::{Error, Result};
 use crate::model::ALPHA_MIN_VALUE;
 use crate::model::classic::FAINT_ABOUT_AXIS;
 use crate::model::ndf::gtr::ALPHA_LEAST;
 use std::f64::consts::FRAC_PI_2;
+
+/// A perceptual roughness: finite, in [0, 1].
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+pub struct Roughness(f64);
+
+impl Roughness {
+    /// A roughness of `value`.
+    ///
+    /// # Errors
+    /// When it is not in [0, 1].
+    pub fn new(value: f64) -> Result<Self> {
+        if (0.0..=1.0).contains(&value) {
+            return Ok(Self(value));
+        }
+        Err(Error::input(format!("a roughness of {value}; give one in [0, 1]")))
+    }
+
+    /// The number.
+    pub const fn get(self) -> f64 {
+        self.0
+    }
+}
 
 /// How rough a lobe is: every model takes a perceptual roughness in [0, 1], and evaluates its own measure of it.
 #[derive(Debug, Clone, Copy, PartialEq)]

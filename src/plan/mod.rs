@@ -3,6 +3,7 @@
 
 use crate::base::error::{Error, Result};
 use crate::base::precision::{INTEGRAL_F32, Precision, VALUE_F32};
+use crate::base::tolerance::{RULE_SHARE, Tolerance, UNORM_RULE};
 use crate::model::compensation::{Compensation, Factor};
 use crate::model::lobe::Lobe;
 use crate::model::parameters::Parameters;
@@ -13,37 +14,76 @@ use crate::table::quantity::{Evaluation, Quantity};
 use crate::table::report::Choice;
 use crate::table::rule::CHUNK;
 use crate::table::rule::{MAX_GAUSS, MAX_GRID, MAX_SAMPLES, Rule};
-use crate::table::storage::{Storage, UNORM};
+use crate::table::storage::Storage;
 use std::collections::BTreeMap;
 use std::fmt;
 
 /// One table to bake: quantity × axes × subject, and how.
+///
+/// A plan is checked when it is made and immutable from then on: each `with_…` returns another one, checked again.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TablePlan {
-    /// Unique in its plan.
-    pub name: String,
-    /// What is tabulated.
-    pub quantity: &'static Quantity,
-    /// Of what: a model's name (a basis with unit weights) or a material's.
-    pub subject: String,
-    /// The axes, slowest first: roughness if it is one, then the quantity's variables.
-    pub axes: Vec<Axis>,
-    /// The channels' names.
-    pub channels: Vec<String>,
-    /// The lobes whose weighted sum it is.
-    pub lobes: Vec<Lobe>,
-    /// The rule of its integrals.
-    pub rule: Rule,
-    /// The error it must not exceed, as stored: absolute for integrals, relative for values.
-    pub tolerance: f64,
-    /// The format that its values are rounded to.
-    pub storage: Storage,
-    /// What the optimiser chose: the tolerance then holds for bilinear look-ups.
-    pub bilinear: Option<Choice>,
+    name: String,
+    quantity: &'static Quantity,
+    subject: String,
+    axes: Vec<Axis>,
+    channels: Vec<String>,
+    lobes: Vec<Lobe>,
+    rule: Rule,
+    tolerance: Tolerance,
+    storage: Storage,
+    bilinear: Option<Choice>,
+    decisions: Decisions,
+}
+
+/// What follows from the tolerance, decided once when a plan is made (see [`tolerance`](crate::base::tolerance)).
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Decisions {
+    /// The share that the quadrature rule may be off by.
+    rule_tolerance: f64,
+    /// The least arithmetic that meets the tolerance.
+    precision: Precision,
+    /// The format that values are stored in.
+    stored: Storage,
 }
 
 impl TablePlan {
+    /// The table of a weighted sum of lobes, one weight of each lobe for each channel, by the warped rule, to the default
+    /// tolerance, stored as f32.
+    ///
+    /// `axes` are the quantity's variables, slowest first, after roughness if that is one.
+    ///
+    /// # Errors
+    /// When there is no lobe, the weights do not fit the channels, or the axes do not fit the quantity and the lobes.
+    pub fn new(
+        name: impl Into<String>,
+        quantity: &'static Quantity,
+        subject: impl Into<String>,
+        channels: Vec<String>,
+        lobes: Vec<Lobe>,
+        axes: Vec<Axis>,
+    ) -> Result<Self> {
+        let decisions = Decisions { rule_tolerance: 0.0, precision: Precision::F32, stored: Storage::F32 };
+        let plan = Self {
+            name: name.into(),
+            quantity,
+            subject: subject.into(),
+            axes,
+            channels,
+            lobes,
+            rule: Rule::Warped,
+            tolerance: Tolerance::DEFAULT,
+            storage: Storage::F32,
+            bilinear: None,
+            decisions,
+        };
+        plan.checked()
+    }
+
     /// A basis: one model with unit weights, its components as channels.
+    ///
+    /// # Errors
+    /// When the roughness is outside [0, 1], or the axes do not fit the quantity and the model.
     pub fn basis(
         name: impl Into<String>,
         quantity: &'static Quantity,
@@ -52,27 +92,46 @@ impl TablePlan {
         axes: Vec<Axis>,
     ) -> Result<Self> {
         let unit = [[1.0, 0.0], [0.0, 1.0]];
-        let plan = Self {
-            name: name.into(),
-            quantity,
-            subject: model.name.into(),
-            axes,
-            channels: model.components.iter().map(|c| c.name.to_string()).collect(),
-            lobes: vec![Lobe::new(model, roughness, unit[..model.components.len()].to_vec())],
-            rule: Rule::Warped,
-            tolerance: DEFAULT_TOLERANCE,
-            storage: Storage::F32,
-            bilinear: None,
-        };
-        plan.checked()
+        let lobe = Lobe::new(model, roughness, unit[..model.components.len()].to_vec())?;
+        let channels = model.components.iter().map(|c| c.name.to_string()).collect();
+        Self::new(name, quantity, model.name, channels, vec![lobe], axes)
     }
 
-    /// The same table by another rule.
+    /// The table under another name.
+    pub fn with_name(self, name: impl Into<String>) -> Self {
+        Self { name: name.into(), ..self }
+    }
+
+    /// The table of another subject: what manifests call it.
+    pub fn with_subject(self, subject: impl Into<String>) -> Self {
+        Self { subject: subject.into(), ..self }
+    }
+
+    /// The table by another rule.
+    ///
+    /// # Errors
+    /// When the rule does not fit the quantity or a lobe.
     pub fn with_rule(self, rule: Rule) -> Result<Self> {
         Self { rule, ..self }.checked()
     }
 
-    /// The same of lobes with energy compensation. What comes back is not linear in F0 and F90, so that a basis must
+    /// The table over other axes.
+    ///
+    /// # Errors
+    /// When the axes do not fit the quantity and the lobes.
+    pub fn with_axes(self, axes: Vec<Axis>) -> Result<Self> {
+        Self { axes, ..self }.checked()
+    }
+
+    /// The table of other lobes.
+    ///
+    /// # Errors
+    /// When there is none, or the weights do not fit the channels.
+    pub fn with_lobes(self, lobes: Vec<Lobe>) -> Result<Self> {
+        Self { lobes, ..self }.checked()
+    }
+
+    /// The table of lobes with energy compensation. What comes back is not linear in F0 and F90, so that a basis must
     /// have one component.
     ///
     /// # Errors
@@ -94,7 +153,7 @@ impl TablePlan {
         self.checked()
     }
 
-    /// The same table with some of its model's parameters, by name.
+    /// The table with some of its models' parameters, by name.
     ///
     /// # Errors
     /// When a lobe's model has none of this name, or the value is outside its range.
@@ -107,38 +166,154 @@ impl TablePlan {
         self.checked()
     }
 
-    /// The same with all of them, each in its place.
-    pub(crate) fn with_places(mut self, parameters: Parameters) -> Self {
-        self.lobes.iter_mut().for_each(|lobe| lobe.parameters = parameters);
+    /// The table with all parameters of its lobes, each in its place.
+    pub(crate) fn with_places(mut self, parameters: Parameters) -> Result<Self> {
+        self.lobes = self.lobes.into_iter().map(|lobe| lobe.with_parameters(parameters)).collect();
+        self.checked()
+    }
+
+    /// The table to another tolerance: the largest error of its stored values, absolute for integrals, relative for values.
+    ///
+    /// # Errors
+    /// When it is not finite or not above 0, or the table is too large for the arithmetic that it then takes.
+    pub fn with_tolerance(self, tolerance: f64) -> Result<Self> {
+        let tolerance =
+            Tolerance::new(tolerance).map_err(|why| why.at(format_args!("table \"{}\"", self.name)))?;
+        Self { tolerance, ..self }.checked()
+    }
+
+    /// The table in another format.
+    ///
+    /// # Errors
+    /// When the table is too large for it.
+    pub fn with_storage(self, storage: Storage) -> Result<Self> {
+        Self { storage, ..self }.checked()
+    }
+
+    /// The table in a layout that was chosen for bilinear look-ups.
+    pub(crate) fn with_layout(self, axes: Vec<Axis>, storage: Storage, choice: Choice) -> Result<Self> {
+        Self { axes, storage, bilinear: Some(choice), ..self }.checked()
+    }
+
+    /// The table at other samples of its own axes, for a comparison: not checked again, as nothing is baked of it.
+    pub(crate) fn at_samples(&self, axes: Vec<Axis>) -> Self {
+        Self { axes, ..self.clone() }.decided()
+    }
+
+    /// The table by the warped rule at other samples of its own axes, to another tolerance, unrounded.
+    pub(crate) fn exact_at_samples(&self, axes: Vec<Axis>, tolerance: Tolerance) -> Self {
+        let exact = Self {
+            axes,
+            rule: Rule::Warped,
+            tolerance,
+            storage: Storage::F32,
+            bilinear: None,
+            ..self.clone()
+        };
+        exact.decided()
+    }
+
+    /// The name, unique in a set of tables.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The quantity that is tabulated.
+    pub fn quantity(&self) -> &'static Quantity {
+        self.quantity
+    }
+
+    /// The subject: a model's name (a basis with unit weights) or a material's.
+    pub fn subject(&self) -> &str {
+        &self.subject
+    }
+
+    /// The axes, slowest first: roughness if it is one, then the quantity's variables.
+    pub fn axes(&self) -> &[Axis] {
+        &self.axes
+    }
+
+    /// The channels' names.
+    pub fn channels(&self) -> &[String] {
+        &self.channels
+    }
+
+    /// The lobes whose weighted sum the table is of.
+    pub fn lobes(&self) -> &[Lobe] {
+        &self.lobes
+    }
+
+    /// The rule of its integrals.
+    pub fn rule(&self) -> Rule {
+        self.rule
+    }
+
+    /// The largest error of the stored values: absolute for integrals, relative for values.
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance.get()
+    }
+
+    /// The format that was asked for: see [`TablePlan::stored`] for the one that the tolerance takes.
+    pub fn storage(&self) -> Storage {
+        self.storage
+    }
+
+    /// The layout that was chosen for bilinear look-ups: the tolerance then holds for these.
+    pub fn bilinear(&self) -> Option<&Choice> {
+        self.bilinear.as_ref()
+    }
+
+    /// The share of the tolerance that the quadrature rule may be off by.
+    pub(crate) fn rule_tolerance(&self) -> f64 {
+        self.decisions.rule_tolerance
+    }
+
+    /// The least arithmetic that meets the tolerance: f32 has a floor, of some hundred roundings in an
+    /// integral and of [`VALUE_F32`] in a value.
+    pub fn precision(&self) -> Precision {
+        self.decisions.precision
+    }
+
+    /// The format that values are stored in: f64 where f32 is asked for and cannot meet the tolerance.
+    pub fn stored(&self) -> Storage {
+        self.decisions.stored
+    }
+
+    /// The plan with what follows from its tolerance.
+    fn decided(mut self) -> Self {
+        let tolerance = self.tolerance.get();
+        let floor = match self.quantity.evaluation {
+            Evaluation::Value => self.value_f32(),
+            _ => self.integral_f32(),
+        };
+        let precision = if tolerance < floor { Precision::F64 } else { Precision::F32 };
+        let rule_tolerance = match self.storage {
+            Storage::Unorm16 => (RULE_SHARE * tolerance).min(UNORM_RULE),
+            Storage::F16 => RULE_SHARE * tolerance,
+            _ if self.bilinear.is_some() => RULE_SHARE * tolerance,
+            _ => tolerance,
+        };
+        let stored = match (self.storage, precision) {
+            (Storage::F32, Precision::F64) => Storage::F64,
+            (storage, _) => storage,
+        };
+        self.decisions = Decisions { rule_tolerance, precision, stored };
         self
     }
 
-    /// The same table with another tolerance.
-    pub fn with_tolerance(self, tolerance: f64) -> Self {
-        Self { tolerance, ..self }
-    }
-
-    /// The same table in another format.
-    pub fn with_storage(self, storage: Storage) -> Self {
-        Self { storage, ..self }
-    }
-
-    /// What the rule may be off by: a tenth of the tolerance where rounding and look-ups take the rest.
-    pub(crate) fn rule_tolerance(&self) -> f64 {
-        match self.storage {
-            Storage::Unorm16 => (0.1 * self.tolerance).min(UNORM_RULE),
-            Storage::F16 => 0.1 * self.tolerance,
-            _ if self.bilinear.is_some() => 0.1 * self.tolerance,
-            _ => self.tolerance,
-        }
-    }
-
     /// The plan, if it can be carried out: axes that fit the quantity and the lobes, α in range.
-    pub(crate) fn checked(self) -> Result<Self> {
+    fn checked(self) -> Result<Self> {
+        let this = self.decided();
+        this.check()?;
+        Ok(this)
+    }
+
+    /// Refuses what cannot be carried out.
+    fn check(&self) -> Result<()> {
         let refuse = |why: String| Err(Error::input(format!("table \"{}\": {why}", self.name)));
-        let variables: Vec<_> = self.axes.iter().map(|axis| axis.variable).collect();
+        let variables: Vec<_> = self.axes.iter().map(|axis| axis.variable()).collect();
         let swept = variables.first() == Some(&Variable::Roughness);
-        let anisotropic = self.lobes.iter().any(|lobe| lobe.model.is_anisotropic());
+        let anisotropic = self.lobes.iter().any(|lobe| lobe.model().is_anisotropic());
         let given = &variables[usize::from(swept)..];
         let wanted = self.quantity.variables(anisotropic || given.contains(&Variable::PhiI));
         if given != wanted {
@@ -149,20 +324,34 @@ impl TablePlan {
                 names.join(", ")
             ));
         }
+        if self.lobes.is_empty() {
+            return refuse("it has no lobe; give one or more".into());
+        }
+        if !(1..=3).contains(&self.channels.len()) {
+            return refuse(format!("it has {} channels; give 1 to 3", self.channels.len()));
+        }
+        if let Some(lobe) = self.lobes.iter().find(|lobe| lobe.weights().len() != self.channels.len()) {
+            return refuse(format!(
+                "{} has weights for {} channels of {}; give one pair of weights for each channel",
+                lobe.model().name,
+                lobe.weights().len(),
+                self.channels.len()
+            ));
+        }
         for lobe in &self.lobes {
-            let model = lobe.model;
-            if let Some(why) = model.refused(&lobe.parameters) {
+            let model = lobe.model();
+            if let Some(why) = model.refused(&lobe.parameters()) {
                 return refuse(format!("{}: {why}", model.name));
             }
-            for of in lobe.factors.iter().filter_map(Factor::albedo) {
+            for of in lobe.factors().iter().filter_map(Factor::albedo) {
                 if let Some(why) = of.refused() {
                     return refuse(format!("{} has no albedo: {why}", of.model.name));
                 }
-                if of.model.shape.is_some() && !swept && of.roughness.or(lobe.roughness).is_none() {
+                if of.model.shape.is_some() && !swept && of.roughness.or(lobe.roughness()).is_none() {
                     return refuse(format!("the albedo of {} needs a roughness", of.model.name));
                 }
             }
-            if model.shape.is_some() && !swept && lobe.roughness.is_none() {
+            if model.shape.is_some() && !swept && lobe.roughness().is_none() {
                 return refuse(format!("{} needs a roughness: give a value or an axis", model.name));
             }
             let alphas = self.alphas(lobe);
@@ -190,7 +379,7 @@ impl TablePlan {
                 ));
             }
         }
-        if swept && !self.lobes.iter().any(|lobe| lobe.model.shape.is_some()) {
+        if swept && !self.lobes.iter().any(|lobe| lobe.model().shape.is_some()) {
             return refuse(format!("{} has no roughness to be an axis", self.subject));
         }
         // Counts multiply beyond any usize.
@@ -220,7 +409,7 @@ impl TablePlan {
         if let Err(why) = self.check_rule() {
             return refuse(why);
         }
-        Ok(self)
+        Ok(())
     }
 
     /// Why the rule does not fit the quantity and the lobes, if it does not.
@@ -241,8 +430,9 @@ impl TablePlan {
                 "{samples} samples; give 1 to {CHUNK}, or a multiple of it up to {MAX_SAMPLES}"
             ));
         }
-        for Lobe { model, factors, .. } in &self.lobes {
-            if !factors.is_empty()
+        for lobe in &self.lobes {
+            let model = lobe.model();
+            if !lobe.factors().is_empty()
                 && self.rule != Rule::Warped
                 && self.quantity.evaluation != Evaluation::Value
             {
@@ -302,38 +492,20 @@ impl TablePlan {
     /// That of one lobe, at the worst of its settings.
     fn lobe_f32(&self, lobe: &Lobe) -> f64 {
         let settings = lobe.settings(&self.alphas(lobe));
-        settings.iter().map(|s| lobe.model.value_f32_at(s)).fold(0.0, f64::max)
+        settings.iter().map(|s| lobe.model().value_f32_at(s)).fold(0.0, f64::max)
     }
 
     /// The least tolerance of its integrals in f32. Where α differ by a ratio, values are off by it where the half vector
     /// is near the larger one's axis, which is little of an integral until the ratio is above a hundred: measured.
     fn integral_f32(&self) -> f64 {
         let of = |lobe: &Lobe| {
-            let stretched = (self.lobe_f32(lobe) / lobe.model.value_f32 / 20.0).max(1.0);
-            let factors: f64 = lobe.factors.iter().map(Factor::rho_bound).product();
+            let stretched = (self.lobe_f32(lobe) / lobe.model().value_f32 / 20.0).max(1.0);
+            let factors: f64 = lobe.factors().iter().map(Factor::rho_bound).product();
             let settings = lobe.settings(&self.alphas(lobe));
-            let least = settings.iter().map(|s| lobe.model.integral_f32_at(s)).fold(INTEGRAL_F32, f64::max);
+            let least = settings.iter().map(|s| lobe.model().integral_f32_at(s)).fold(INTEGRAL_F32, f64::max);
             least * stretched * factors.max(1.0)
         };
         self.lobes.iter().map(of).fold(INTEGRAL_F32, f64::max)
-    }
-
-    /// The least arithmetic that meets the tolerance: f32 has a floor, of some hundred roundings in an
-    /// integral and of [`VALUE_F32`] in a value.
-    pub fn precision(&self) -> Precision {
-        let floor = match self.quantity.evaluation {
-            Evaluation::Value => self.value_f32(),
-            _ => self.integral_f32(),
-        };
-        if self.tolerance < floor { Precision::F64 } else { Precision::F32 }
-    }
-
-    /// The format that values are stored in: f64 where f32 is asked for and cannot meet the tolerance.
-    pub fn stored(&self) -> Storage {
-        match (self.storage, self.precision()) {
-            (Storage::F32, Precision::F64) => Storage::F64,
-            (storage, _) => storage,
-        }
     }
 
     /// Whether it can be baked and written piece by piece: values, in f32 throughout.
@@ -368,27 +540,28 @@ impl TablePlan {
     /// Whether it is of a model with unit weights. The subject's name does not tell: a material may be
     /// named like a model.
     pub fn is_basis(&self) -> bool {
-        matches!(&self.lobes[..], [lobe] if lobe.factors.is_empty() && self.channels.iter().eq(lobe.model.components.iter().map(|c| c.name)))
+        matches!(&self.lobes[..], [lobe] if lobe.factors().is_empty() && self.channels.iter().eq(lobe.model().components.iter().map(|c| c.name)))
     }
 
     /// The axis of a variable, if the table has it.
     pub fn axis(&self, variable: Variable) -> Option<&Axis> {
-        self.axes.iter().find(|axis| axis.variable == variable)
+        self.axes.iter().find(|axis| axis.variable() == variable)
     }
 
     /// The shape of a lobe, in its model's own measure, along the table's slowest axis; one value without a
     /// roughness axis.
     pub fn alphas(&self, lobe: &Lobe) -> Vec<f64> {
-        let swept = self.axis(Variable::Roughness).map(|axis| axis.values.clone());
-        let roughness = swept.unwrap_or_else(|| vec![lobe.roughness.unwrap_or(0.0)]);
-        roughness.into_iter().map(|r| lobe.model.measure(r)).collect()
+        let swept = self.axis(Variable::Roughness).map(|axis| axis.values().to_vec());
+        // A model without roughness has one row; a plan refuses a lobe that lacks the roughness it takes.
+        let roughness = swept.unwrap_or_else(|| vec![lobe.roughness().unwrap_or(0.0)]);
+        roughness.into_iter().map(|r| lobe.model().measure(r)).collect()
     }
 
     /// Parameters that are the same for the whole table.
     pub fn parameters(&self) -> BTreeMap<String, f64> {
         let fixed = |lobe: &Lobe| {
-            let rest = named(lobe.model, &lobe.parameters);
-            lobe.roughness.map(|r| ("roughness", r)).into_iter().chain(rest).collect::<Vec<_>>()
+            let rest = named(lobe.model(), &lobe.parameters());
+            lobe.roughness().map(|r| ("roughness", r)).into_iter().chain(rest).collect::<Vec<_>>()
         };
         let several = self.lobes.iter().filter(|lobe| !fixed(lobe).is_empty()).count() > 1;
         let name = |k, name: &str| if several { format!("lobes[{k}].{name}") } else { name.into() };
@@ -396,12 +569,6 @@ impl TablePlan {
         lobes.flat_map(|(k, lobe)| fixed(lobe).into_iter().map(move |(n, x)| (name(k, n), x))).collect()
     }
 }
-
-/// A quarter of unorm16's step: the rule may then not lift a 1 beyond what rounds to 1.
-pub(crate) const UNORM_RULE: f64 = 0.25 / UNORM;
-
-/// The tolerance where nobody names one.
-pub const DEFAULT_TOLERANCE: f64 = 1e-4;
 
 /// The most values of a table in one piece: 1 GiB in f32, and 2 more in f64.
 const MAX_VALUES: usize = 1 << 28;
@@ -417,9 +584,9 @@ impl fmt::Display for TablePlan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: {} of {}", self.name, self.quantity.name, self.subject)?;
         for (k, axis) in self.axes.iter().enumerate() {
-            let [a, b] = axis.range;
+            let [a, b] = axis.range();
             let open = if k == 0 { " over " } else { " × " };
-            write!(f, "{open}{} {} [{a:.4}, {b:.4}]", axis.variable.name(), axis.len())?;
+            write!(f, "{open}{} {} [{a:.4}, {b:.4}]", axis.variable().name(), axis.len())?;
         }
         if self.quantity.evaluation != Evaluation::Value {
             write!(f, ", {}", self.rule)?;
@@ -427,7 +594,7 @@ impl fmt::Display for TablePlan {
         if self.storage != Storage::F32 {
             write!(f, ", stored as {}", self.storage.name())?;
         }
-        write!(f, ", to {:e}", self.tolerance)?;
+        write!(f, ", to {:e}", self.tolerance.get())?;
         match &self.bilinear {
             Some(choice) => write!(f, " bilinearly: {choice}"),
             None => Ok(()),

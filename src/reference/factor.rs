@@ -16,7 +16,7 @@ pub struct Product {
 impl Product {
     /// Those of a lobe, in a row of this roughness if the table sweeps it; `None` where an albedo has no reference.
     pub fn new(lobe: &Lobe, swept: Option<f64>) -> Option<Self> {
-        let row = swept.or(lobe.roughness);
+        let row = swept.or(lobe.roughness());
         let known = |factor: &Factor| {
             let curve = match factor.albedo() {
                 Some(of) => Some(Curve::of(of, &of.setting(row))?),
@@ -24,7 +24,7 @@ impl Product {
             };
             Some((factor.clone(), curve))
         };
-        Some(Self { factors: lobe.factors.iter().map(known).collect::<Option<_>>()? })
+        Some(Self { factors: lobe.factors().iter().map(known).collect::<Option<_>>()? })
     }
 
     /// s.

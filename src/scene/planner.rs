@@ -1,6 +1,7 @@
 //! From what a scene says to what must be baked: bases, not colours; ranges that occur, not all.
 
 use crate::base::error::{Error, Result};
+use crate::base::tolerance::Tolerance;
 use crate::check::layout_search::optimise;
 use crate::model;
 use crate::model::compensation::{Compensation, Factor};
@@ -8,7 +9,7 @@ use crate::model::lobe::Lobe;
 use crate::model::parameters::Parameters;
 use crate::model::parameters::named;
 use crate::model::{Integral, MODELS, Model};
-use crate::plan::{DEFAULT_TOLERANCE, TablePlan};
+use crate::plan::TablePlan;
 use crate::scene::{
     Distribution, LeftOut, Material, MaterialLobe, Scene, SubjectRequest, TableRequest, Weights,
 };
@@ -16,11 +17,10 @@ use crate::table::axis::{Axis, Mapping, Positions, Variable};
 use crate::table::quantity;
 use crate::table::quantity::{BRDF, Evaluation, QUANTITIES, Quantity, RHO_DH};
 use crate::table::rule::Rule;
-use crate::table::storage::Storage;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashSet};
 use std::f64::consts::FRAC_PI_2;
-use std::fmt;
+use std::{fmt, mem};
 
 /// Everything that a scene requires, and what it does not.
 #[derive(Debug, Clone, PartialEq)]
@@ -121,7 +121,7 @@ impl Plan {
     /// When the selection names what is not there, or a requested table cannot be baked.
     pub fn new(scene: &Scene, selection: &Selection) -> Result<Self> {
         let quantity = selection.quantity.as_deref().map(quantity::find).transpose()?;
-        let tolerance = selection.tolerance.or(scene.tolerance).unwrap_or(DEFAULT_TOLERANCE);
+        let tolerance = selection.tolerance.or(scene.tolerance).unwrap_or(Tolerance::DEFAULT.get());
         let materials: Vec<_> = match &selection.material {
             Some(name) => vec![scene.material(name)?],
             None => scene.materials.iter().collect(),
@@ -140,7 +140,13 @@ impl Plan {
         let mut taken: HashSet<_> = given.map(str::to_lowercase).collect();
         if scene.tables.is_empty() {
             plan.require_defaults(&materials, tolerance)?;
-            plan.tables.iter_mut().for_each(|table| table.name = free_name(&table.name, &mut taken));
+            plan.tables = mem::take(&mut plan.tables)
+                .into_iter()
+                .map(|table| {
+                    let name = free_name(table.name(), &mut taken);
+                    table.with_name(name)
+                })
+                .collect();
         } else {
             for request in &scene.tables {
                 let wanted = match (&request.subject, &selection.material) {
@@ -151,23 +157,24 @@ impl Plan {
                 if wanted {
                     let mut table = requested(request, scene, tolerance).map_err(|e| e.at(&request.place))?;
                     if request.name.is_none() {
-                        table.name = free_name(&table.name, &mut taken);
+                        let name = free_name(table.name(), &mut taken);
+                        table = table.with_name(name);
                     }
                     plan.tables.push(table);
                 }
             }
         }
         if let Some(only) = quantity {
-            plan.tables.retain(|table| table.quantity == only);
+            plan.tables.retain(|table| table.quantity() == only);
             for other in QUANTITIES.into_iter().filter(|q| *q != only) {
                 plan.leave_out(other.name, "the selection asks for another quantity");
             }
         }
         // Of materials `describe` says it.
-        let is_material = |table: &TablePlan| scene.materials.iter().any(|m| m.name == table.subject);
+        let is_material = |table: &TablePlan| scene.materials.iter().any(|m| m.name == table.subject());
         let tables = plan.tables.iter().filter(|table| table.is_basis() || !is_material(table));
-        let lobes = tables.flat_map(|table| &table.lobes);
-        let bases: Vec<_> = lobes.map(|lobe| (lobe.model, lobe.parameters)).collect();
+        let lobes = tables.flat_map(|table| table.lobes());
+        let bases: Vec<_> = lobes.map(|lobe| (lobe.model(), lobe.parameters())).collect();
         bases.into_iter().for_each(|(model, parameters)| plan.require_basis(model, &parameters, None));
         plan.describe(&materials)?;
         for model in MODELS {
@@ -204,7 +211,7 @@ impl Plan {
                     };
                     let name = format!("{}.{}", model.name, quantity.name);
                     let table = TablePlan::basis(name, quantity, model, None, axes)?;
-                    self.tables.push(table.with_places(parameters).with_tolerance(tolerance));
+                    self.tables.push(table.with_places(parameters)?.with_tolerance(tolerance)?);
                 }
             }
         }
@@ -218,18 +225,19 @@ impl Plan {
             };
             for quantity in [&BRDF, &RHO_DH] {
                 let what = format!("{}.{}", material.name, quantity.name);
-                let delta = |lobe: &Lobe| lobe.model.is_delta_at(lobe.roughness.unwrap_or(0.0));
+                let delta = Lobe::is_delta;
                 if quantity.evaluation == Evaluation::Value && lobes.iter().any(delta) {
                     self.leave_out(what, "a lobe of it is a delta and has no values");
                     continue;
                 }
-                if let Some(why) = lobes.iter().find_map(|lobe| no_table(lobe.model, quantity)) {
+                if let Some(why) = lobes.iter().find_map(|lobe| no_table(lobe.model(), quantity)) {
                     self.leave_out(what, why);
                     continue;
                 }
                 let axes = natural_axes(quantity, material.is_anisotropic())?;
                 self.tables.push(
-                    material_table(what, quantity, material, lobes.clone(), axes)?.with_tolerance(tolerance),
+                    material_table(what, quantity, material, lobes.clone(), axes)?
+                        .with_tolerance(tolerance)?,
                 );
             }
         }
@@ -303,30 +311,32 @@ impl Plan {
                         .into_iter()
                         .map(|(parameters, _)| {
                             let factors = lobe.factors.clone();
-                            Lobe { parameters, factors, ..Lobe::new(model, constant, Vec::new()) }
+                            Ok(Lobe::new(model, constant, Vec::new())?
+                                .with_parameters(parameters)
+                                .with_factors(factors))
                         })
-                        .collect(),
+                        .collect::<Result<_>>()?,
                 };
                 for part in &split {
-                    let own = lobe.roughness.as_ref().filter(|_| part.model == model);
-                    self.require_basis(part.model, &part.parameters, own);
+                    let own = lobe.roughness.as_ref().filter(|_| part.model() == model);
+                    self.require_basis(part.model(), &part.parameters(), own);
                     let weight = |k: usize| match &lobe.weights {
                         Weights::Constant(_) => {
-                            Weight::Constant(std::array::from_fn(|channel| part.weights[channel][k]))
+                            Weight::Constant(std::array::from_fn(|channel| part.weights()[channel][k]))
                         }
                         Weights::Textured(formulas) => Weight::Textured(formulas[k].to_string()),
                     };
                     let components = part
-                        .model
+                        .model()
                         .components
                         .iter()
                         .enumerate()
                         .map(|(k, c)| (c.name.to_string(), weight(k)));
                     plan.weights.push(BasisWeight {
-                        basis: part.model.name.into(),
-                        parameters: named(part.model, &part.parameters),
+                        basis: part.model().name.into(),
+                        parameters: named(part.model(), &part.parameters()),
                         components: components.collect(),
-                        factors: part.factors.iter().map(Factor::describe).collect(),
+                        factors: part.factors().iter().map(Factor::describe).collect(),
                     });
                 }
                 // Every weight of every format is at most 1: they multiply reflectances.
@@ -339,13 +349,13 @@ impl Plan {
                 plan.rho_bound += if largest > 0.0 { largest * bound } else { 0.0 };
             }
             let serves = |t: &&TablePlan| match t.is_basis() {
-                true => material.lobes.iter().filter(|lobe| lobe.model == t.subject).any(|lobe| {
-                    let made = settings_of(lobe, t.lobes[0].model);
-                    made.iter().any(|(parameters, _)| *parameters == t.lobes[0].parameters)
+                true => material.lobes.iter().filter(|lobe| lobe.model == t.subject()).any(|lobe| {
+                    let made = settings_of(lobe, t.lobes()[0].model());
+                    made.iter().any(|(parameters, _)| *parameters == t.lobes()[0].parameters())
                 }),
-                false => t.subject == material.name,
+                false => t.subject() == material.name,
             };
-            plan.tables = self.tables.iter().filter(serves).map(|t| t.name.clone()).collect();
+            plan.tables = self.tables.iter().filter(serves).map(|t| t.name().to_owned()).collect();
             self.materials.push(plan);
         }
         Ok(())
@@ -417,7 +427,7 @@ fn free_name(name: &str, taken: &mut HashSet<String>) -> String {
 /// A table that a recipe asks for.
 fn requested(request: &TableRequest, scene: &Scene, tolerance: f64) -> Result<TablePlan> {
     let quantity = quantity::find(&request.quantity)?;
-    let given = |variable| request.axes.iter().find(|axis| axis.variable == variable).cloned();
+    let given = |variable| request.axes.iter().find(|axis| axis.variable() == variable).cloned();
     let mut axes: Vec<_> = given(Variable::Roughness).into_iter().collect();
     let anisotropic = match &request.subject {
         SubjectRequest::Basis { model, .. } => model::find(model)?.is_anisotropic(),
@@ -442,11 +452,11 @@ fn requested(request: &TableRequest, scene: &Scene, tolerance: f64) -> Result<Ta
         }
     };
     let table = table.with_rule(request.rule.unwrap_or(Rule::Warped))?;
-    let table = table.with_tolerance(request.tolerance.unwrap_or(tolerance));
+    let table = table.with_tolerance(request.tolerance.unwrap_or(tolerance))?;
     if request.auto.is_empty() {
-        return table.with_storage(request.storage.unwrap_or_default()).checked();
+        return table.with_storage(request.storage.unwrap_or_default());
     }
-    optimise(table, &request.auto, request.storage)?.checked()
+    optimise(table, &request.auto, request.storage)
 }
 
 impl TablePlan {
@@ -472,19 +482,8 @@ fn material_table(
     lobes: Vec<Lobe>,
     axes: Vec<Axis>,
 ) -> Result<TablePlan> {
-    TablePlan {
-        name,
-        quantity,
-        subject: material.name.clone(),
-        axes,
-        channels: ["R", "G", "B"].map(String::from).to_vec(),
-        lobes,
-        rule: Rule::Warped,
-        tolerance: DEFAULT_TOLERANCE,
-        storage: Storage::F32,
-        bilinear: None,
-    }
-    .checked()
+    let channels = ["R", "G", "B"].map(String::from).to_vec();
+    TablePlan::new(name, quantity, material.name.clone(), channels, lobes, axes)
 }
 
 /// The lobes of a material that is the same everywhere; else why it is not.
@@ -515,16 +514,12 @@ fn lobes_of(
         let (a, b) = (masked(a, of), masked(b, of));
         let weights = (0..3).map(|c| [a[c], b[c]]).collect();
         let factors = lobe.factors.clone();
-        lobe.compensation.lobes(Lobe { parameters, factors, ..Lobe::new(model, roughness, weights) }).map(
-            |lobes| {
-                // Those of the other channels alone, whose setting is another, are nothing.
-                let is_own =
-                    move |lobe: &Lobe| lobe.weights.iter().zip(of).any(|(w, of)| of && *w != [0.0; 2]);
-                lobes
-                    .into_iter()
-                    .filter(move |lobe| of == [true; 3] || lobe.factors.is_empty() || is_own(lobe))
-            },
-        )
+        let whole = Lobe::new(model, roughness, weights)?.with_parameters(parameters).with_factors(factors);
+        lobe.compensation.lobes(whole).map(|lobes| {
+            // Those of the other channels alone, whose setting is another, are nothing.
+            let is_own = move |lobe: &Lobe| lobe.weights().iter().zip(of).any(|(w, of)| of && *w != [0.0; 2]);
+            lobes.into_iter().filter(move |lobe| of == [true; 3] || lobe.factors().is_empty() || is_own(lobe))
+        })
     };
     let lobes = settings_of(lobe, model).into_iter().map(of).collect::<Result<Vec<_>>>()?;
     Ok(lobes.into_iter().flatten().collect())

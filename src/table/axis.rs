@@ -132,16 +132,11 @@ pub enum Mapping {
 /// One axis of a table: a variable and the values it takes, strictly increasing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
-    /// What varies.
-    pub variable: Variable,
-    /// How u becomes a value.
-    pub mapping: Mapping,
-    /// Where samples lie in u.
-    pub positions: Positions,
-    /// The range [a, b] that u = 0 and u = 1 stand for.
-    pub range: [f64; 2],
-    /// The values, in the variable's unit.
-    pub values: Vec<f64>,
+    variable: Variable,
+    mapping: Mapping,
+    positions: Positions,
+    range: [f64; 2],
+    values: Vec<f64>,
 }
 
 /// The longest axis: one row of it must fit a device buffer with room to spare.
@@ -224,6 +219,49 @@ impl Axis {
             return Err(Error::input(format!("{name}: {} values; give 1 to {MAX_COUNT}", values.len())));
         }
         Ok(Self { variable, mapping: Mapping::Linear, positions: Positions::Values, range: [a, b], values })
+    }
+
+    /// The variable that the axis samples.
+    pub fn variable(&self) -> Variable {
+        self.variable
+    }
+
+    /// How u ∈ [0, 1] becomes a value.
+    pub fn mapping(&self) -> Mapping {
+        self.mapping
+    }
+
+    /// Where the samples lie in u.
+    pub fn positions(&self) -> Positions {
+        self.positions
+    }
+
+    /// The range [a, b] that u = 0 and u = 1 stand for.
+    pub fn range(&self) -> [f64; 2] {
+        self.range
+    }
+
+    /// The values, in the variable's unit, strictly increasing.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The axis with another number of samples over the same range.
+    ///
+    /// # Errors
+    /// As [`Axis::new`]; listed values have no other count.
+    pub fn with_count(&self, count: usize) -> Result<Self> {
+        Self::new(self.variable, count, self.range, self.positions, self.mapping)
+    }
+
+    /// The axis at some values within its range, which need not increase: for comparisons, not for tables that are baked.
+    pub(crate) fn at_values(&self, values: Vec<f64>) -> Self {
+        Self { positions: Positions::Values, mapping: Mapping::Linear, values, ..*self }
+    }
+
+    /// The axis at some of its samples, by their indices: a preview's.
+    pub(crate) fn thinned(&self, indices: &[usize]) -> Self {
+        Self { values: indices.iter().map(|&k| self.values[k]).collect(), ..*self }
     }
 
     /// Number of samples.

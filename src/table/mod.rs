@@ -269,8 +269,9 @@ impl Table {
     /// A texel's coordinates, in words.
     pub fn place(&self, texel: usize) -> String {
         let coordinates = self.axes.iter().zip(self.indices(texel));
-        let words: Vec<_> =
-            coordinates.map(|(axis, k)| format!("{} = {}", axis.variable.name(), axis.values[k])).collect();
+        let words: Vec<_> = coordinates
+            .map(|(axis, k)| format!("{} = {}", axis.variable().name(), axis.values()[k]))
+            .collect();
         words.join(", ")
     }
 }

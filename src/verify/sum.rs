@@ -85,7 +85,7 @@ impl<'a> Sum<'a> {
         compensation: Compensation,
         parameters: Vec<Parameter>,
     ) -> Result<Self> {
-        let model = lobe.model;
+        let model = lobe.model();
         let known = |name: &str| {
             model.shape.is_some_and(|shape| name == "roughness" || name == shape.name)
                 || model.parameters.iter().any(|parameter| parameter.name == name)
@@ -98,18 +98,13 @@ impl<'a> Sum<'a> {
         let lobes = move |setting: &[f64]| {
             let mut lobe = lobe.clone();
             for (name, &value) in names.iter().zip(setting) {
-                match name.as_str() {
-                    "roughness" => lobe.roughness = Some(value),
-                    name if model.shape.is_some_and(|shape| shape.name == name) => {
-                        lobe.roughness = model.shape.map(|shape| shape.roughness(value));
+                match model.components.iter().position(|component| component.weight == name) {
+                    Some(k) => {
+                        let mut weights = lobe.weights().to_vec();
+                        weights.iter_mut().for_each(|pair| pair[k] = value);
+                        lobe = lobe.with_weights(weights)?;
                     }
-                    name if model.parameters.iter().any(|parameter| parameter.name == name) => {
-                        lobe.set(name, value)?;
-                    }
-                    name => {
-                        let k = model.components.iter().position(|c| c.weight == name).unwrap_or(0);
-                        lobe.weights.iter_mut().for_each(|weights| weights[k] = value);
-                    }
+                    None => lobe.set(name, value)?,
                 }
             }
             compensation.lobes(lobe)
@@ -130,7 +125,7 @@ impl<'a> Sum<'a> {
         let parameters = whole.iter().map(|p| with_values(p, &first)).collect::<Result<Vec<_>>>()?;
         let points = if has_values(&first) { Some(Points::new(evaluator, &first)?) } else { None };
         // What a factor breaks is said once, and of the largest bound.
-        for violation in first.iter().flat_map(|lobe| &lobe.factors).flat_map(Factor::violations) {
+        for violation in first.iter().flat_map(|lobe| lobe.factors()).flat_map(Factor::violations) {
             match violations.iter_mut().find(|known| known.property == violation.property) {
                 Some(known) if known.bound >= violation.bound => {}
                 Some(known) => *known = violation,
@@ -149,7 +144,7 @@ impl<'a> Sum<'a> {
     /// The relative error of values in f32, the largest over the ends of the parameters.
     fn value_f32(&self) -> f64 {
         let lobes = self.corners().filter_map(|setting| (self.lobes)(&setting).ok()).flatten();
-        lobes.map(|lobe| lobe.model.value_f32_at(&lobe.setting_at(None))).fold(VALUE_F32, f64::max)
+        lobes.filter_map(|lobe| value_f32_of(&lobe)).fold(VALUE_F32, f64::max)
     }
 
     /// Both ends of each parameter with those of the others.
@@ -164,9 +159,9 @@ impl<'a> Sum<'a> {
     fn is_one_sided(&self) -> bool {
         let high: Vec<_> = self.parameters.iter().map(|parameter| parameter.high).collect();
         (self.lobes)(&high).unwrap_or_default().iter().any(|lobe| {
-            let scale = Scale::new(&lobe.factors, lobe.roughness);
+            let scale = Scale::new(lobe.factors(), lobe.roughness());
             let [there, back] = [scale.at(1.0, 0.3), scale.at(0.3, 1.0)];
-            let is_there = lobe.weights.iter().any(|weight| *weight != [0.0; 2]);
+            let is_there = lobe.weights().iter().any(|weight| *weight != [0.0; 2]);
             is_there && (there - back).abs() > 1e-3 * there.max(back)
         })
     }
@@ -175,9 +170,9 @@ impl<'a> Sum<'a> {
     fn factor_error(&self) -> f64 {
         let low: Vec<_> = self.parameters.iter().map(|parameter| parameter.low).collect();
         let lobes = (self.lobes)(&low).unwrap_or_default();
-        let error = |lobe: &Lobe| match &lobe.factors[..] {
+        let error = |lobe: &Lobe| match &lobe.factors()[..] {
             [] => 0.0,
-            factors => Scale::new(factors, lobe.roughness).error(),
+            factors => Scale::new(factors, lobe.roughness()).error(),
         };
         lobes.iter().map(error).fold(0.0, f64::max)
     }
@@ -187,12 +182,12 @@ impl<'a> Sum<'a> {
         let mut rho = [0.0; CHANNELS];
         for lobe in &(self.lobes)(setting).ok()? {
             let (reference, setting, mu) =
-                (lobe.model.reference?, lobe.setting_at(None), theta_i.cos().max(0.0));
-            let [a, b] = match &lobe.factors[..] {
+                (lobe.model().reference?, lobe.setting_at(None).ok()?, theta_i.cos().max(0.0));
+            let [a, b] = match &lobe.factors()[..] {
                 [] => reference.rho_dh(mu, &setting),
                 _ => reference::Product::new(lobe, None)?.rho_dh(reference, mu, &setting, false),
             };
-            for (rho, [weight_a, weight_b]) in rho.iter_mut().zip(&lobe.weights) {
+            for (rho, [weight_a, weight_b]) in rho.iter_mut().zip(lobe.weights()) {
                 *rho += weight_a * a + weight_b * b;
             }
         }
@@ -201,14 +196,17 @@ impl<'a> Sum<'a> {
 
     /// ρ_dh of one component model over all the roughnesses and angles that are asked for.
     fn bake(&self, lobe: &Lobe, roughnesses: Vec<f64>, thetas: Vec<f64>) -> Result<Table> {
-        let model = lobe.model;
+        let model = lobe.model();
         let rough = model.shape.map(|_| Axis::listed(Variable::Roughness, roughnesses));
         let axes = rough.into_iter().chain([Axis::listed(Variable::ThetaI, thetas)]);
         let about = Axis::listed(Variable::PhiI, PHIS.to_vec());
         let axes = axes.chain(model.is_anisotropic().then_some(about)).collect::<Result<_>>()?;
         let plan = TablePlan::basis(model.name, &RHO_DH, model, None, axes)?;
-        let mut plan = plan.with_places(lobe.parameters).with_tolerance(INTEGRAL_F32);
-        plan.lobes[0].factors.clone_from(&lobe.factors);
+        let lobes = plan.lobes().iter().map(|basis| {
+            basis.clone().with_parameters(lobe.parameters()).with_factors(lobe.factors().to_vec())
+        });
+        let lobes = lobes.collect();
+        let plan = plan.with_lobes(lobes)?.with_tolerance(INTEGRAL_F32)?;
         self.evaluator.bake(&plan, Check::Sample(0), &mut Timings::default(), &Unobserved)
     }
 }
@@ -259,16 +257,16 @@ impl Subject for Sum<'_> {
         };
         let mut f = vec![0.0; CHANNELS];
         for lobe in lobes {
-            if lobe.model.refused(&lobe.parameters).is_some() {
+            if lobe.model().refused(&lobe.parameters()).is_some() {
                 return None; // nothing is promised of it
             }
-            let ab = lobe.model.reference?.brdf(&at, &lobe.setting_at(None))?;
-            let factor = match &lobe.factors[..] {
+            let ab = lobe.model().reference?.brdf(&at, &lobe.setting_at(None).ok()?)?;
+            let factor = match &lobe.factors()[..] {
                 [] => 1.0,
                 _ => reference::Product::new(lobe, None)?.at(at.theta_i.cos(), at.theta_e.cos()),
             };
             let [a, b] = ab.map(|x| x * factor);
-            for (f, [weight_a, weight_b]) in f.iter_mut().zip(&lobe.weights) {
+            for (f, [weight_a, weight_b]) in f.iter_mut().zip(lobe.weights()) {
                 *f += weight_a * a + weight_b * b;
             }
         }
@@ -278,43 +276,43 @@ impl Subject for Sum<'_> {
     /// By the tables that a bake makes: ρ_dh of each model, at the tolerance that f32 has.
     fn rho_dh(&mut self, settings: &[Vec<f64>], thetas: &[f64]) -> Result<Option<Vec<f64>>> {
         let sums = settings.iter().map(|setting| (self.lobes)(setting)).collect::<Result<Vec<_>>>()?;
-        if sums.iter().flatten().any(|lobe| matches!(lobe.model.integral, Integral::Unbounded(_))) {
+        if sums.iter().flatten().any(|lobe| matches!(lobe.model().integral, Integral::Unbounded(_))) {
             return Ok(None); // no table has it: the generic integral shows what is gained
         }
         let mut rho = vec![0.0; settings.len() * thetas.len() * CHANNELS];
         for k in 0..sums.first().map_or(0, Vec::len) {
             let lobes: Vec<_> = sums.iter().map(|lobes| &lobes[k]).collect();
-            let roughness = |lobe: &Lobe| lobe.roughness.unwrap_or(0.0);
+            let roughness = |lobe: &Lobe| lobe.roughness().unwrap_or(0.0);
             let columns = sorted(thetas.iter().copied());
             // A table for each setting of what it has no axis for, over the roughnesses that come with it.
             let mut tables: Vec<(Parameters, &[Factor], Vec<f64>, Table)> = Vec::new();
             for (lobe, rho) in lobes.iter().zip(rho.chunks_exact_mut(thetas.len() * CHANNELS)) {
-                if lobe.model.refused(&lobe.parameters).is_some() {
+                if lobe.model().refused(&lobe.parameters()).is_some() {
                     continue; // nothing is promised of it
                 }
                 let is_of = |lobe: &Lobe, parameters: &Parameters, factors: &[Factor]| {
-                    lobe.parameters == *parameters && lobe.factors == factors
+                    lobe.parameters() == *parameters && lobe.factors() == factors
                 };
                 let made = tables.iter().position(|(p, f, ..)| is_of(lobe, p, f));
                 let made = match made {
                     Some(made) => made,
                     None => {
                         let alike =
-                            lobes.iter().filter(|other| is_of(other, &lobe.parameters, &lobe.factors));
+                            lobes.iter().filter(|other| is_of(other, &lobe.parameters(), lobe.factors()));
                         let roughnesses = sorted(alike.map(|lobe| roughness(lobe)));
                         let table = self.bake(lobe, roughnesses.clone(), columns.clone())?;
-                        tables.push((lobe.parameters, &lobe.factors, roughnesses, table));
+                        tables.push((lobe.parameters(), lobe.factors(), roughnesses, table));
                         tables.len() - 1
                     }
                 };
                 let (.., roughnesses, table) = &tables[made];
-                let row = lobe.model.shape.map_or(0, |_| place(roughnesses, roughness(lobe)));
+                let row = lobe.model().shape.map_or(0, |_| place(roughnesses, roughness(lobe)));
                 // Of azimuths, the one that reflects most.
-                let azimuths = if lobe.model.is_anisotropic() { PHIS.len() } else { 1 };
+                let azimuths = if lobe.model().is_anisotropic() { PHIS.len() } else { 1 };
                 for (&theta, rho) in thetas.iter().zip(rho.chunks_exact_mut(CHANNELS)) {
                     let first = (row * columns.len() + place(&columns, theta)) * azimuths;
                     let texels: Vec<_> = (first..first + azimuths).map(|k| table.texel(k)).collect();
-                    for (rho, weights) in rho.iter_mut().zip(&lobe.weights) {
+                    for (rho, weights) in rho.iter_mut().zip(lobe.weights()) {
                         let at = |texel: &Vec<f64>| -> f64 {
                             weights.iter().zip(texel).map(|(weight, value)| weight * value).sum()
                         };
@@ -342,19 +340,19 @@ impl Subject for Sum<'_> {
     /// Of lobes that nothing multiplies, as it is asked for every value.
     fn agreement_at(&self, setting: &[f64]) -> Option<f64> {
         let (last, lobes) = &self.last;
-        let is_known = last == setting && lobes.iter().all(|lobe| lobe.factors.is_empty());
-        let errors = || lobes.iter().map(|lobe| lobe.model.value_f32_at(&lobe.setting_at(None)));
+        let is_known = last == setting && lobes.iter().all(|lobe| lobe.factors().is_empty());
+        let errors = || lobes.iter().filter_map(value_f32_of);
         is_known.then(|| errors().fold(VALUE_F32, f64::max))
     }
 
     /// Where α differ, a common turn changes f.
     fn symmetry(&self) -> Symmetry {
-        let anisotropic = self.last.1.iter().any(|lobe| lobe.model.is_anisotropic());
+        let anisotropic = self.last.1.iter().any(|lobe| lobe.model().is_anisotropic());
         Symmetry { isotropic: !anisotropic, bilateral: true }
     }
 
     fn faint(&self) -> f64 {
-        self.last.1.iter().filter_map(|lobe| lobe.model.faint()).fold(FAINT, f64::max)
+        self.last.1.iter().filter_map(|lobe| lobe.model().faint()).fold(FAINT, f64::max)
     }
 
     fn declared(&self) -> &[Declared] {
@@ -384,7 +382,7 @@ impl Subject for Sum<'_> {
         }
         let low: Vec<_> = self.whole.iter().map(|parameter| parameter.low).collect();
         let lobes = (self.lobes)(&low).unwrap_or_default();
-        let refused = lobes.iter().find_map(|lobe| lobe.model.refused(&lobe.parameters));
+        let refused = lobes.iter().find_map(|lobe| lobe.model().refused(&lobe.parameters()));
         let refused = refused.map(|why| format!("not judged where it is refused: {why}"));
         let clipped = self.parameters.iter().zip(&self.whole).filter(|(values, whole)| values != whole);
         let clipped = clipped.map(|(values, whole)| {
@@ -399,13 +397,13 @@ impl Subject for Sum<'_> {
 }
 
 fn has_values(lobes: &[Lobe]) -> bool {
-    !lobes.iter().any(|lobe| lobe.model.is_delta_at(lobe.roughness.unwrap_or(0.0)))
+    !lobes.iter().any(|lobe| lobe.is_delta())
 }
 
 /// The part of a parameter's range that has values.
 fn with_values(parameter: &Parameter, lobes: &[Lobe]) -> Result<Parameter> {
     let Parameter { name, low, high, .. } = parameter;
-    let shapes = || lobes.iter().filter_map(|lobe| lobe.model.shape);
+    let shapes = || lobes.iter().filter_map(|lobe| lobe.model().shape);
     let least = match name.ends_with("roughness") {
         true => shapes().map(|shape| shape.roughness(shape.least)).fold(0.0, f64::max),
         false => shapes().filter(|shape| shape.name == name).map(|shape| shape.least).fold(0.0, f64::max),
@@ -427,4 +425,9 @@ fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
 /// The index of one of them.
 fn place(values: &[f64], value: f64) -> usize {
     values.partition_point(|&v| v < value)
+}
+
+/// The relative error of a lobe's values in f32 at its own setting.
+fn value_f32_of(lobe: &Lobe) -> Option<f64> {
+    Some(lobe.model().value_f32_at(&lobe.setting_at(None).ok()?))
 }

@@ -298,18 +298,20 @@ impl<'a> UserShader<'a> {
         let loop_turns = if function.loops { device.canary()?.loop_turns } else { None };
         let (wgpu, _) = device.wgpu();
         let source = wgpu::ShaderSource::Wgsl(function.compose().into());
-        let module =
-            wgpu.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(&function.entry), source });
-        device.fault().map_err(refused)?;
-        let pipeline = wgpu.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(&function.entry),
-            layout: None,
-            module: &module,
-            entry_point: None,
-            compilation_options: Default::default(),
-            cache: None,
+        let pipeline = device.guarded(|| {
+            let module = wgpu
+                .create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(&function.entry), source });
+            device.fault()?;
+            Ok(wgpu.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(&function.entry),
+                layout: None,
+                module: &module,
+                entry_point: None,
+                compilation_options: Default::default(),
+                cache: None,
+            }))
         });
-        device.fault().map_err(refused)?;
+        let pipeline = pipeline.map_err(refused)?;
 
         use wgpu::BufferUsages as Usage;
         let buffer = |size: usize, usage| {
@@ -358,6 +360,11 @@ impl<'a> UserShader<'a> {
 
     /// One dispatch, of no more than a batch.
     fn dispatch(&mut self, setting: &[f64], angles: &[Angles], out: &mut Vec<f32>) -> Result<()> {
+        let device = self.device;
+        device.guarded(|| self.dispatch_unguarded(setting, angles, out))
+    }
+
+    fn dispatch_unguarded(&mut self, setting: &[f64], angles: &[Angles], out: &mut Vec<f32>) -> Result<()> {
         let (device, queue) = self.device.wgpu();
         let cosine = self.cosine;
         let pairs: Vec<[[f32; 4]; 2]> = angles

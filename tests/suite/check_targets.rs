@@ -74,7 +74,7 @@ fn every_model_keeps_its_promises_over_its_whole_range() {
             .extend(model.parameters.iter().map(|p| Parameter::new(p.name, p.range[0], p.range[1]).unwrap()));
         let weights = model.components.iter().map(|c| Parameter::new(c.weight, 0.0, 1.0).unwrap());
         parameters.extend(weights);
-        let lobe = Lobe::new(model, Some(0.5), vec![[0.0; 2]; 3]);
+        let lobe = Lobe::new(model, Some(0.5), vec![[0.0; 2]; 3]).unwrap();
         let report = report(&mut Sum::model(device(), lobe, parameters).unwrap());
         for finding in &report.findings {
             let declared = finding.property == "energy" && model.violation().is_some();
@@ -99,7 +99,7 @@ fn every_model_keeps_its_promises_over_its_whole_range() {
 #[test]
 fn a_range_that_reaches_the_mirror_is_integrated_to_it() {
     let model = gonio::model::find("ggx").unwrap();
-    let lobe = Lobe::new(model, None, vec![[1.0, 1.0]; 3]);
+    let lobe = Lobe::new(model, None, vec![[1.0, 1.0]; 3]).unwrap();
     let range = Parameter::new("roughness", 0.0, 0.5).unwrap();
     let report = report(&mut Sum::model(device(), lobe, vec![range]).unwrap());
     assert!(report.is_kept() && report.notes[0].contains("0.001"), "{:?}", report.notes);
@@ -209,7 +209,7 @@ fn a_declared_gain_that_is_missing_or_too_large_fails() {
 #[test]
 fn agreement_is_asked_for_at_every_setting() {
     for (values, expected) in [(1.0, Verdict::Kept), (1.0 + 3e-5, Verdict::Broken)] {
-        let lobe = Lobe::new(model("ggx-anisotropic"), Some(0.5), vec![[1.0; 2]; 3]);
+        let lobe = Lobe::new(model("ggx-anisotropic"), Some(0.5), vec![[1.0; 2]; 3]).unwrap();
         let inner = Sum::model(device(), lobe, vec![Parameter::new("aspect", 0.01, 100.0).unwrap()]).unwrap();
         let options = Options { budget: 200_000, search: false };
         let report = check(&mut Scaled { inner, scale: 0.0, values }, &options, &Unobserved).unwrap();

@@ -11,7 +11,8 @@ use gonio::table::quantity::{BRDF, RHO_DH, RHO_HH, SPLIT_SUM};
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI};
 
 fn rho(model: &'static Model, alpha: f64, mus: &[f64], tolerance: f64) -> Vec<f64> {
-    let plan = basis(&SPLIT_SUM, model, &[alpha.sqrt()], vec![listed(Mu, mus)]).with_tolerance(tolerance);
+    let plan =
+        basis(&SPLIT_SUM, model, &[alpha.sqrt()], vec![listed(Mu, mus)]).with_tolerance(tolerance).unwrap();
     let table = bake(device(), &plan, Check::Sample(0));
     (0..table.texels()).map(|texel| table.texel(texel).into_iter().sum()).collect()
 }
@@ -117,7 +118,9 @@ fn lafortune_has_phong_the_retroreflector_and_a_product_of_cosines() {
     }
     let mus = [1.0, 0.7, 0.2, 1e-3];
     let rho_of = |alpha: f64, c: [f64; 2]| {
-        let plan = basis(&SPLIT_SUM, lafortune, &[alpha.sqrt()], vec![listed(Mu, &mus)]).with_tolerance(1e-8);
+        let plan = basis(&SPLIT_SUM, lafortune, &[alpha.sqrt()], vec![listed(Mu, &mus)])
+            .with_tolerance(1e-8)
+            .unwrap();
         bake(device(), &with(plan, c), Check::All).values.iter().collect::<Vec<f64>>()
     };
     for alpha in [0.0, 1e-6, 1e-3, 0.1, 1.0] {
@@ -179,7 +182,7 @@ fn ashikhmin_and_shirleys_base_has_its_closed_form() {
     for (axis, mu) in mus.map(|mu| (listed(Mu, &[mu]), mu)) {
         let plan = TablePlan::basis("rho", &SPLIT_SUM, model("ashikhmin-shirley-diffuse"), None, vec![axis]);
         for evaluator in evaluators() {
-            let plan = plan.as_ref().unwrap().clone().with_tolerance(1e-9);
+            let plan = plan.as_ref().unwrap().clone().with_tolerance(1e-9).unwrap();
             let rho = bake(evaluator, &plan, Check::All).values.get(0);
             assert!(
                 (rho - (1.0 - (1.0 - 0.5 * mu).powi(5))).abs() <= 2e-7 * (1.0 - mu) + 1e-9,

@@ -21,7 +21,7 @@ fn rho_dh(evaluator: &Evaluator, name: &str, roughness: f64, albedo: Option<f64>
     let plan =
         TablePlan::basis("rho", &SPLIT_SUM, model(name), Some(roughness), vec![listed(Mu, mus)]).unwrap();
     let given: Vec<_> = albedo.map(|albedo| ("albedo".into(), albedo)).into_iter().collect();
-    let plan = plan.with_parameters(&given).unwrap().with_tolerance(1e-9);
+    let plan = plan.with_parameters(&given).unwrap().with_tolerance(1e-9).unwrap();
     bake(evaluator, &plan, Check::Sample(0)).values.iter().collect()
 }
 
@@ -78,7 +78,7 @@ fn of_fujii_have_their_closed_forms() {
             }
             close("fujii", rho_dh(evaluator, "fujii", r, None, &[0.0])[0], 1.0, 1e-7);
             let plan = TablePlan::basis("mean", &RHO_HH, model("fujii"), Some(r), vec![]).unwrap();
-            let table = bake(evaluator, &plan.with_tolerance(1e-9), Check::All);
+            let table = bake(evaluator, &plan.with_tolerance(1e-9).unwrap(), Check::All);
             close("fujii", table.values.get(0), (1.0 + K2 * r) / (1.0 + K1 * r), 1e-9);
         }
     }
@@ -128,7 +128,7 @@ fn of_burley_and_frostbite_have_their_closed_forms() {
 fn keep_their_digits_at_grazing() {
     for (evaluator, budget) in evaluators().into_iter().zip([VALUE_F32, 1.5 / f64::from(1 << 24)]) {
         let f = |r: f64, theta: f64, delta: f64| {
-            let lobe = Lobe::new(model("fujii"), Some(r), vec![[1.0, 0.0]]);
+            let lobe = Lobe::new(model("fujii"), Some(r), vec![[1.0, 0.0]]).unwrap();
             let angles = Angles { theta_i: theta, phi_i: 0.0, theta_e: theta, phi_e: PI + delta };
             let (mut values, delta) = (Vec::new(), angles.delta_phi());
             Points::new(evaluator, &[lobe]).unwrap().evaluate(&[angles], &mut values).unwrap();

@@ -186,8 +186,10 @@ fn integrals_meet_their_tolerance() {
         let scene = scene(&disney.recipe()).unwrap();
         for tolerance in [1e-2, 1e-4, 3e-6] {
             let axes = vec![listed(Variable::ThetaI, &[0.0, 0.6, 1.2, 1.5, 1.57, PI / 2.0])];
-            let plan =
-                TablePlan::material("t", &RHO_DH, &scene, "paint", axes).unwrap().with_tolerance(tolerance);
+            let plan = TablePlan::material("t", &RHO_DH, &scene, "paint", axes)
+                .unwrap()
+                .with_tolerance(tolerance)
+                .unwrap();
             let table = bake(device(), &plan, Check::All);
             println!("to {tolerance}: {:?}", table.error.measured_max);
             assert!(table.error.measured_max.unwrap() <= tolerance, "{:?}", table.error);

@@ -466,7 +466,8 @@ fn integrals_below_a_sheen_meet_their_tolerance() {
     for tolerance in [1e-2, 1e-5] {
         let thetas = [0.0, 1.04, 1.06, 1.5, PI / 2.0 - 1e-4];
         let axes = vec![listed(Variable::ThetaI, &thetas)];
-        let plan = TablePlan::material("t", &RHO_DH, &made, "M", axes).unwrap().with_tolerance(tolerance);
+        let plan =
+            TablePlan::material("t", &RHO_DH, &made, "M", axes).unwrap().with_tolerance(tolerance).unwrap();
         let table = bake(device(), &plan, Check::All);
         println!("to {tolerance}: {:?}", table.error.measured_max);
         assert!(table.error.measured_max.unwrap() <= tolerance, "{:?}", table.error);

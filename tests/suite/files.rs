@@ -407,7 +407,7 @@ fn f64_sum(at: &[f64]) -> f64 {
 fn table(name: &str, axes: Vec<Axis>, channels: &[&str], f: impl Fn(&[f64]) -> f64) -> Table {
     let shape: Vec<_> = axes.iter().map(Axis::len).collect();
     let value = |texel| {
-        let at: Vec<_> = axes.iter().zip(indices(&shape, texel)).map(|(axis, k)| axis.values[k]).collect();
+        let at: Vec<_> = axes.iter().zip(indices(&shape, texel)).map(|(axis, k)| axis.values()[k]).collect();
         f(&at)
     };
     let texels = 0..shape.iter().product();
@@ -471,15 +471,15 @@ fn snapshot(dir: &Path) -> BTreeMap<String, Vec<u8>> {
 fn check_axes(table: &Table, read: &Value) {
     assert_eq!(read.as_array().unwrap().len(), table.axes.len());
     for (axis, read) in table.axes.iter().zip(read.as_array().unwrap()) {
-        assert_eq!(read["name"], json!(axis.variable.name()));
-        assert_eq!(read["unit"], json!(axis.variable.unit()));
-        assert_eq!(read["mapping"], json!(axis.mapping));
-        assert_eq!(read["positions"], json!(axis.positions));
+        assert_eq!(read["name"], json!(axis.variable().name()));
+        assert_eq!(read["unit"], json!(axis.variable().unit()));
+        assert_eq!(read["mapping"], json!(axis.mapping()));
+        assert_eq!(read["positions"], json!(axis.positions()));
         let numbers = |key: &str| -> Vec<u64> {
             read[key].as_array().unwrap().iter().map(|v| v.as_f64().unwrap().to_bits()).collect()
         };
-        assert_eq!(numbers("range"), axis.range.map(f64::to_bits));
-        assert_eq!(numbers("values"), axis.values.iter().map(|v| v.to_bits()).collect::<Vec<_>>());
+        assert_eq!(numbers("range"), axis.range().map(f64::to_bits));
+        assert_eq!(numbers("values"), axis.values().iter().map(|v| v.to_bits()).collect::<Vec<_>>());
     }
 }
 

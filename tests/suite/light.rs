@@ -401,8 +401,8 @@ fn equation_12_radiosity() {
     let m = radiosity(device(), (&one, "m"), &uniform, &[frame], 1e-4, &Unobserved).unwrap()[0].value[0];
     let e = in_closed_form(&uniform, [0.0, 0.0, 1.0]).unwrap()[0];
     let ggx = &lobes[0];
-    let [a, b] = ggx.model.reference.unwrap().rho_hh(&ggx.setting_at(None));
-    close(m / e, ggx.weights[0][0] * a + ggx.weights[0][1] * b, 1e-6);
+    let [a, b] = ggx.model().reference.unwrap().rho_hh(&ggx.setting_at(None).unwrap());
+    close(m / e, ggx.weights()[0][0] * a + ggx.weights()[0][1] * b, 1e-6);
 }
 
 /// The lights that are no maps.

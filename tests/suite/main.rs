@@ -3,6 +3,7 @@
 mod common;
 
 mod anisotropy;
+mod api;
 mod atlas;
 mod canary;
 mod check;

@@ -22,7 +22,10 @@ fn integrals_join_the_mirror_as_alpha_squared() {
     for evaluator in evaluators() {
         let integrals = |name: &str, alpha: f64| {
             let plan = basis(&SPLIT_SUM, model(name), &[alpha.sqrt()], vec![listed(Mu, &mus)]);
-            bake(evaluator, &plan.with_tolerance(1e-9), Check::Sample(0)).values.iter().collect::<Vec<_>>()
+            bake(evaluator, &plan.with_tolerance(1e-9).unwrap(), Check::Sample(0))
+                .values
+                .iter()
+                .collect::<Vec<_>>()
         };
         let mirror = integrals("mirror", 0.0);
         let gap = |alpha: f64| {
@@ -61,7 +64,7 @@ fn the_peak_is_exact_down_to_the_smallest_alpha() {
                 let tan2_m = (theta.sin() * (0.5 * mirror.delta_phi()).sin() / mu).powi(2);
                 let d = 1.0 / (PI * (alpha + tan2_m / alpha).powi(2));
                 let all = d / (4.0 * mu * mu * (1.0 + alpha * alpha * tan2).sqrt());
-                let lobe = Lobe::new(model("ggx"), Some(1.0), vec![[1.0, 0.0], [1.0, 1.0]]);
+                let lobe = Lobe::new(model("ggx"), Some(1.0), vec![[1.0, 0.0], [1.0, 1.0]]).unwrap();
                 let mut values = Vec::new();
                 Points::new(evaluator, &[lobe]).unwrap().sweep(&[alpha], &[mirror], &mut values).unwrap();
                 for (&value, exact) in values.iter().zip([all * one_minus_fc, all]) {
@@ -87,7 +90,7 @@ fn a_delta_is_refused() {
         assert!(table("ggx", Some(roughness)).contains("delta"), "{}", table("ggx", Some(roughness)));
     }
     for evaluator in evaluators() {
-        let lobe = |name: &str, roughness| Lobe::new(model(name), roughness, vec![[1.0, 1.0]]);
+        let lobe = |name: &str, roughness| Lobe::new(model(name), roughness, vec![[1.0, 1.0]]).unwrap();
         let refused = Points::new(evaluator, &[lobe("mirror", None)]).err().unwrap().to_string();
         assert!(refused.contains("delta and has no values"), "{refused}");
         let mut ggx = Points::new(evaluator, &[lobe("ggx", Some(0.0))]).unwrap();

@@ -462,14 +462,14 @@ fn the_commented_recipe_is_read() {
     assert_eq!([ggx(wood).min(), ggx(wood).max()], [0.35, 0.55]);
 
     let [brdf, dfg, plaster, average] = &scene.tables[..] else { panic!("{:?}", scene.tables) };
-    let axes: Vec<_> = brdf.axes.iter().map(|axis| (axis.variable.name(), axis.len())).collect();
+    let axes: Vec<_> = brdf.axes.iter().map(|axis| (axis.variable().name(), axis.len())).collect();
     assert_eq!(axes, [("theta_i", 8), ("theta_e", 32), ("delta_phi", 64)]);
     assert_eq!(brdf.subject, SubjectRequest::Material("gold".into()));
     assert_eq!((dfg.name.as_deref(), dfg.tolerance), (Some("dfg"), Some(1e-5)));
-    assert_eq!(dfg.axes[0].range, [1e-3, 1.0]);
+    assert_eq!(dfg.axes[0].range(), [1e-3, 1.0]);
     assert_eq!(
-        (plaster.rule, &plaster.axes[0].values),
-        (Some(Rule::Grid { theta: 256, phi: 512 }), &vec![0.0, 0.5, 1.0, 1.5])
+        (plaster.rule, plaster.axes[0].values()),
+        (Some(Rule::Grid { theta: 256, phi: 512 }), &[0.0, 0.5, 1.0, 1.5][..])
     );
     assert_eq!(
         average.subject,

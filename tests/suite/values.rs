@@ -36,13 +36,18 @@ fn everywhere() -> impl Iterator<Item = TablePlan> {
 #[test]
 fn agree_with_the_reference_at_every_input() {
     for plan in everywhere() {
-        for (evaluator, budget) in evaluators().into_iter().zip(value_budgets(plan.lobes[0].model)) {
+        for (evaluator, budget) in evaluators().into_iter().zip(value_budgets(plan.lobes()[0].model())) {
             let table = bake(evaluator, &plan, Check::All);
             assert_eq!(table.error.texels_checked, plan.texels());
             let worst = table.error.measured_max.unwrap();
             assert!(!table.rule.contains("on the CPU"), "{}", table.rule);
-            println!("{} {}: {worst:.2e} over {} values", plan.subject, table.precision, table.values.len());
-            assert!(worst <= budget, "{} {}: {:?}", plan.subject, table.precision, table.error);
+            println!(
+                "{} {}: {worst:.2e} over {} values",
+                plan.subject(),
+                table.precision,
+                table.values.len()
+            );
+            assert!(worst <= budget, "{} {}: {:?}", plan.subject(), table.precision, table.error);
         }
     }
 }
@@ -53,7 +58,7 @@ fn are_reciprocal() {
     for plan in everywhere() {
         for evaluator in evaluators() {
             let table = bake(evaluator, &plan, Check::Sample(0));
-            let budget = exchange_budget(evaluator, plan.lobes[0].model);
+            let budget = exchange_budget(evaluator, plan.lobes()[0].model());
             let shape = table.shape();
             let [i, e, d] = shape[shape.len() - 3..] else { panic!() };
             let channels = table.channels.len();
@@ -64,7 +69,7 @@ fn are_reciprocal() {
                     for c in 0..channels {
                         let (there, back) = (at(a, b)[c], at(b, a)[c]);
                         let budget = budget * there.max(back);
-                        assert!((there - back).abs() <= budget, "{}: {there} and {back}", plan.subject);
+                        assert!((there - back).abs() <= budget, "{}: {there} and {back}", plan.subject());
                     }
                 }
             }

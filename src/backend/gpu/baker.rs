@@ -97,13 +97,13 @@ const ROWS_PER_DISPATCH: usize = 1 << 20;
 
 impl Layout {
     pub fn new(table: &TablePlan, precision: Precision) -> Self {
-        let channels = table.channels.len();
+        let channels = table.channels().len();
         if !is_value(table) {
             let units = table.axis(Variable::Roughness).map_or(1, |axis| axis.len());
             let texels = table.texels() / units;
             return Self { units, texels, padded: texels, channels, precision };
         }
-        let texels = table.axes.last().map_or(1, |axis| axis.len());
+        let texels = table.axes().last().map_or(1, |axis| axis.len());
         Self {
             units: table.texels() / texels,
             texels,
@@ -191,11 +191,11 @@ impl Baker {
         if bytes as u64 > limit {
             return Err(Error::Device(format!(
                 "table \"{}\" takes {bytes} bytes in one piece, but the device binds at most {limit}; take fewer samples",
-                table.name
+                table.name()
             )));
         }
         let tile = self.tile(&layout, &stages, 0..layout.units)?;
-        let width = table.axes.last().map_or(1, |axis| axis.len());
+        let width = table.axes().last().map_or(1, |axis| axis.len());
         let row = if is_value(table) { layout.padded } else { width };
         let recorded = Recorded {
             buffer: tile.buffer,
@@ -219,7 +219,7 @@ impl Baker {
             loop_limit::check(table, &work, &known_turns)?;
             Dispatches::new(self, lobe, &work, k > 0, precision)
         };
-        table.lobes.iter().enumerate().map(stages).collect()
+        table.lobes().iter().enumerate().map(stages).collect()
     }
 
     /// The steps of one tile, and the buffer that they fill.
@@ -463,7 +463,7 @@ impl Baker {
 }
 
 fn is_value(table: &TablePlan) -> bool {
-    table.quantity.evaluation == Evaluation::Value
+    table.quantity().evaluation == Evaluation::Value
 }
 
 /// A count as the device takes it.

@@ -39,15 +39,24 @@ pub struct Adapter {
     adapter: wgpu::Adapter,
 }
 
-/// A device of our own.
+/// A device that evaluates tables: one of gonio's own, or a caller's.
 pub struct Device {
     pub(crate) baker: Baker,
-    /// What wgpu says of its adapter.
-    pub info: wgpu::AdapterInfo,
-    #[cfg(feature = "files")]
-    adapter: Adapter,
-    fault: Arc<Mutex<Option<String>>>,
+    info: wgpu::AdapterInfo,
+    owner: Owner,
     pub(crate) canary: OnceLock<Canary>,
+}
+
+/// Who opened a device, and so who hears of its errors.
+enum Owner {
+    /// gonio: its handlers keep the first error here.
+    Gonio {
+        #[cfg_attr(not(feature = "files"), allow(dead_code))]
+        adapter: Adapter,
+        fault: Arc<Mutex<Option<String>>>,
+    },
+    /// A caller, whose handlers stay as they are: error scopes catch what gonio causes.
+    Caller,
 }
 
 /// All adapters that could bake, the best first.
@@ -121,15 +130,49 @@ impl Adapter {
         Ok(Device {
             baker: Baker::new(&device, &queue),
             info: self.info.clone(),
-            #[cfg(feature = "files")]
-            adapter: self.clone(),
-            fault,
+            owner: Owner::Gonio { adapter: self.clone(), fault },
             canary: OnceLock::new(),
         })
     }
 }
 
 impl Device {
+    /// An engine's own device and queue, which can do all that a device of gonio's own can: bake, evaluate points, check,
+    /// light.
+    ///
+    /// The engine's error handlers stay as they are; an error that gonio causes comes back as [`Error::Device`].
+    /// Tables in f64 need [`wgpu::Features::SHADER_F64`]; without it the CPU path does them.
+    pub fn from_wgpu(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
+        Self {
+            baker: Baker::new(device, queue),
+            info: device.adapter_info(),
+            owner: Owner::Caller,
+            canary: OnceLock::new(),
+        }
+    }
+
+    /// Does something with the device, and returns what the device finds wrong with it as an error.
+    pub(crate) fn guarded<T>(&self, work: impl FnOnce() -> Result<T>) -> Result<T> {
+        if let Owner::Gonio { .. } = self.owner {
+            let done = work()?;
+            self.fault()?;
+            return Ok(done);
+        }
+        let filters =
+            [wgpu::ErrorFilter::Validation, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Internal];
+        let scopes = filters.map(|filter| self.baker.device.push_error_scope(filter));
+        let done = work();
+        let mut fault = None;
+        // The last one first, as they are nested.
+        for scope in scopes.into_iter().rev() {
+            fault = pollster::block_on(scope.pop()).or(fault);
+        }
+        match fault {
+            Some(fault) => Err(Error::Device(format!("{}: {fault}", self.name()))),
+            None => done,
+        }
+    }
+
     /// The device that a choice means; `None` for the CPU path, with the reason in a line.
     ///
     /// # Errors
@@ -186,7 +229,18 @@ impl Device {
     /// A new device on the same adapter, after this one was lost.
     #[cfg(feature = "files")]
     pub(crate) fn reopen(&self) -> Result<Self> {
-        self.adapter.open()
+        match &self.owner {
+            Owner::Gonio { adapter, .. } => adapter.open(),
+            Owner::Caller => Err(Error::Device(format!(
+                "{}: the caller's device is lost; hand over a new one",
+                self.name()
+            ))),
+        }
+    }
+
+    /// What wgpu says of its adapter.
+    pub fn info(&self) -> &wgpu::AdapterInfo {
+        &self.info
     }
 
     /// The adapter's name.
@@ -221,7 +275,8 @@ impl Device {
 
     /// The first error that the device reported, if it did.
     pub(crate) fn fault(&self) -> Result<()> {
-        match self.fault.lock().unwrap_or_else(PoisonError::into_inner).take() {
+        let Owner::Gonio { fault, .. } = &self.owner else { return Ok(()) };
+        match fault.lock().unwrap_or_else(PoisonError::into_inner).take() {
             Some(fault) => Err(Error::Device(format!("{}: {fault}", self.name()))),
             None => Ok(()),
         }

@@ -107,8 +107,8 @@ impl Dispatches {
         precision: Precision,
     ) -> Result<Self> {
         let upload = Upload { baker, precision };
-        let channels = lobe.weights.len();
-        let alphas: Vec<_> = work.alphas.iter().map(|&alpha| lobe.model.on_device(alpha)).collect();
+        let channels = lobe.weights().len();
+        let alphas: Vec<_> = work.alphas.iter().map(|&alpha| lobe.model().on_device(alpha)).collect();
         let has_words = baker.device.features().contains(wgpu::Features::SHADER_INT64);
         match &work.kind {
             WorkKind::Values(values) => Ok(Self {
@@ -118,7 +118,7 @@ impl Dispatches {
                         false if has_words && work.scales.is_empty() => Kernel::WideValues,
                         false => Kernel::Values,
                     },
-                    model: Some(lobe.model),
+                    model: Some(lobe.model()),
                     channels,
                     precision: Precision::F32,
                     job: Job::new(lobe, 1.0),
@@ -136,7 +136,7 @@ impl Dispatches {
                 let stage = Stage::inner(&upload, inner, &alphas)?;
                 let parameters = Job::new(lobe, 1.0).parameters;
                 let job = Job { parameters, ..stage.job };
-                let inner = Stage { model: Some(lobe.model), per_unit: inner.count(), job, ..stage };
+                let inner = Stage { model: Some(lobe.model()), per_unit: inner.count(), job, ..stage };
                 // A texel that is one inner integral needs no sum.
                 if let ([Matrix { rows: 1, values, .. }], false) = (&outer[..], accumulate)
                     && let &[weight] = &values[..]
@@ -316,12 +316,12 @@ impl Job {
         // What f32 drops is kept for kernels in f64.
         let rest: fn(f64) -> f32 = |x| (x - f64::from(x as f32)) as f32;
         let mut weights = [[0.0; 4]; 3];
-        for (row, &weight) in weights.iter_mut().zip(&lobe.weights) {
+        for (row, &weight) in weights.iter_mut().zip(lobe.weights()) {
             let [a, b] = weight.map(|x| scale * x);
             *row = [a as f32, b as f32, rest(a), rest(b)];
         }
-        let mut parameters = lobe.parameters;
-        (lobe.model.derive)(&mut parameters);
+        let mut parameters = lobe.parameters();
+        (lobe.model().derive)(&mut parameters);
         let at = |k: usize| [0, 1, 2, 3].map(|j| parameters[4 * k + j]);
         let (first, second) = (at(0), at(1));
         let [value, rest] = [|x: f64| x as f32, rest];

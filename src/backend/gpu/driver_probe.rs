@@ -91,7 +91,7 @@ impl Device {
         if let Some(canary) = self.canary.get() {
             return Ok(*canary);
         }
-        let canary = self.ask()?.judge().map_err(|what| {
+        let canary = self.guarded(|| self.ask())?.judge().map_err(|what| {
             Error::Device(format!("{}: this driver cannot be trusted: {what}; take another", self.name()))
         })?;
         Ok(*self.canary.get_or_init(|| canary))

@@ -24,7 +24,8 @@ pub(crate) fn check(table: &TablePlan, work: &Work, known: impl FnOnce() -> Resu
     Err(Error::Device(format!(
         "table \"{}\": {} takes {turns} turns of loops in one invocation, and only {known} are known to run here (see \
          `gonio devices`); take a coarser rule or tolerance, or the CPU path",
-        table.name, table.rule
+        table.name(),
+        table.rule()
     )))
 }
 
@@ -95,8 +96,8 @@ mod tests {
                     };
                     let axes = rough.into_iter().chain(about.iter().map(of)).collect();
                     let plan = TablePlan::basis("t", quantity, model, None, axes).unwrap();
-                    let plan = plan.with_tolerance(tolerance);
-                    let turns = turns(&Work::new(&plan, &plan.lobes[0]));
+                    let plan = plan.with_tolerance(tolerance).unwrap();
+                    let turns = turns(&Work::new(&plan, &plan.lobes()[0]));
                     let limit = match model.integral {
                         // What is more is refused where it is not known to run.
                         Integral::Mapped(_) if tolerance < 0.9e-6 => u32::MAX,

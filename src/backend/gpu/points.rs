@@ -52,10 +52,14 @@ struct Chunk {
 
 impl<'a> Points<'a> {
     pub fn new(device: &'a Device, lobes: &[Lobe]) -> Result<Self> {
-        let channels = lobes.first().map_or(0, |lobe| lobe.weights.len());
+        device.guarded(|| Self::open(device, lobes))
+    }
+
+    fn open(device: &'a Device, lobes: &[Lobe]) -> Result<Self> {
+        let channels = lobes.first().map_or(0, |lobe| lobe.weights().len());
         let lobe = |(k, lobe): (usize, &Lobe)| {
             let kernel = if k == 0 { Kernel::Points } else { Kernel::AddPoints };
-            let pipeline = device.baker.pipeline(kernel, Some(lobe.model), channels, Precision::F32)?;
+            let pipeline = device.baker.pipeline(kernel, Some(lobe.model()), channels, Precision::F32)?;
             Ok((pipeline, Job::new(lobe, 1.0)))
         };
         let bytes = CHUNK * 4 * channels;
@@ -83,6 +87,10 @@ impl<'a> Points<'a> {
         angles: &[Angles],
         values: &mut [f32],
     ) -> Result<()> {
+        self.device.guarded(|| self.run(settings, angles, values))
+    }
+
+    fn run(&mut self, settings: &[Vec<ScaledLobe>], angles: &[Angles], values: &mut [f32]) -> Result<()> {
         let per_chunk = CHUNK / settings.len().clamp(1, SETTINGS);
         let groups = ranges(settings.len(), SETTINGS);
         let chunks: Vec<_> = groups

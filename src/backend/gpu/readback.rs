@@ -44,7 +44,7 @@ impl Device {
     ) -> Result<Values> {
         let layout = Layout::new(table, precision);
         let mut values = layout.values(layout.units);
-        self.tiles(table, &layout, None, times, tick, &mut values, &mut |_, _| Ok(()))?;
+        self.guarded(|| self.tiles(table, &layout, None, times, tick, &mut values, &mut |_, _| Ok(())))?;
         Ok(values)
     }
 
@@ -60,11 +60,12 @@ impl Device {
     ) -> Result<()> {
         let layout = Layout::new(table, Precision::F32);
         let mut values = layout.values(0);
-        self.tiles(table, &layout, Some(tiles), times, &|_| Ok(()), &mut values, &mut |k, values| {
+        let mut land = |k: usize, values: &mut Values| {
             sink(k, &values.to_f32())?;
             values.clear();
             Ok(())
-        })
+        };
+        self.guarded(|| self.tiles(table, &layout, Some(tiles), times, &|_| Ok(()), &mut values, &mut land))
     }
 
     /// Appends the values of tile after tile to `values`; `sink` looks at them after each, and may take them.

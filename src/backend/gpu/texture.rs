@@ -67,14 +67,14 @@ impl Baker {
         table: &TablePlan,
         format: TextureFormat,
     ) -> Result<wgpu::Texture> {
-        let refuse = |why: String| Err(Error::Device(format!("table \"{}\": {why}", table.name)));
-        if table.channels.len() > format.channels() {
-            return refuse(format!("{format:?} has no room for {} channels", table.channels.len()));
+        let refuse = |why: String| Err(Error::Device(format!("table \"{}\": {why}", table.name())));
+        if table.channels().len() > format.channels() {
+            return refuse(format!("{format:?} has no room for {} channels", table.channels().len()));
         }
-        if format.is_half() && table.quantity.error == ErrorKind::Relative {
+        if format.is_half() && table.quantity().error == ErrorKind::Relative {
             return refuse(format!(
                 "values of {} leave the range of halves; take a float format",
-                table.quantity.name
+                table.quantity().name
             ));
         }
         let recorded = self.record(encoder, table)?;

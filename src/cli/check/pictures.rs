@@ -48,7 +48,7 @@ fn furnace(subject: &mut dyn Subject, report: &Report) -> Result<Option<Table>> 
             })
             .unzip(),
     };
-    let Some(rho) = subject.rho_dh(&settings, &theta.values)? else { return Ok(None) };
+    let Some(rho) = subject.rho_dh(&settings, theta.values())? else { return Ok(None) };
     let channels = subject.channels();
     let (lines, values): (_, Vec<_>) = if names.is_empty() {
         (["R", "G", "B"].map(String::from).to_vec(), rho)
@@ -71,7 +71,7 @@ fn errors(subject: &mut dyn Subject, report: &Report) -> Result<Option<Table>> {
     let delta_phi = input.angles.delta_phi();
     let axes = [Variable::ThetaI, Variable::ThetaE].map(|variable| Axis::natural(variable, SIDE));
     let axes = axes.into_iter().collect::<Result<Vec<_>>>()?;
-    let pairs = axes[0].values.iter().flat_map(|&i| axes[1].values.iter().map(move |&e| (i, e)));
+    let pairs = axes[0].values().iter().flat_map(|&i| axes[1].values().iter().map(move |&e| (i, e)));
     let angles: Vec<_> = pairs
         .map(|(theta_i, theta_e)| Angles { theta_i, phi_i: 0.0, theta_e, phi_e: PI + delta_phi })
         .collect();

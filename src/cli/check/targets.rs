@@ -118,7 +118,7 @@ fn basis<'a>(model: &'static Model, roughness: [f64; 2], evaluator: &'a Evaluato
         parameters.push(Parameter::new("roughness", low, high)?);
     }
     parameters.extend(beside_the_shape(model)?);
-    let lobe = Lobe::new(model, model.shape.map(|_| 1.0), vec![[0.0; 2]; 3]);
+    let lobe = Lobe::new(model, model.shape.map(|_| 1.0), vec![[0.0; 2]; 3])?;
     let subject = Sum::model(evaluator, lobe, parameters)?;
     Ok(Target { subject, command: format!("gonio eval --model {}", model.name) })
 }
@@ -137,8 +137,8 @@ fn used(scene: &Scene, model: &Model) -> Option<[f64; 2]> {
     let of_lobes = lobes.map(|lobe| lobe.roughness.as_ref().map_or([1.0; 2], range));
     let of_tables = scene.tables.iter().filter_map(|table| match &table.subject {
         SubjectRequest::Basis { model: name, roughness, .. } if name == model.name => {
-            let axis = table.axes.iter().find(|axis| axis.variable == Variable::Roughness);
-            Some(roughness.map(|r| [r; 2]).or(axis.map(|axis| axis.range)).unwrap_or([0.0, 1.0]))
+            let axis = table.axes.iter().find(|axis| axis.variable() == Variable::Roughness);
+            Some(roughness.map(|r| [r; 2]).or(axis.map(|axis| axis.range())).unwrap_or([0.0, 1.0]))
         }
         _ => None,
     });

@@ -27,12 +27,12 @@ pub fn run(args: &Args, pairs: &Path, out: &Path) -> Result<()> {
             out.display()
         )));
     }
-    let mut values_file = List::create(out, &plan.channels)?;
+    let mut values_file = List::create(out, plan.channels())?;
     let (evaluator, line) = Evaluator::choose(&args.device)?;
-    let mut points = Points::new(&evaluator, &plan.lobes)?;
+    let mut points = Points::new(&evaluator, plan.lobes())?;
 
     let watch = Watch::new(1);
-    watch.begin(&format!("evaluating {}", plan.subject));
+    watch.begin(&format!("evaluating {}", plan.subject()));
     let (mut angles, mut values) = (Vec::new(), Vec::new());
     let mut seconds = Seconds::default();
     let (mut done, mut insane, mut first) = (0u64, 0u64, None);
@@ -43,7 +43,7 @@ pub fn run(args: &Args, pairs: &Path, out: &Path) -> Result<()> {
             break;
         }
         Seconds::add(&mut seconds.evaluate, || points.evaluate(&angles, &mut values))?;
-        for (k, value) in (done..).zip(values.chunks_exact(plan.channels.len())) {
+        for (k, value) in (done..).zip(values.chunks_exact(plan.channels().len())) {
             if !value.iter().copied().all(is_sane) {
                 insane += 1;
                 first.get_or_insert(k);
@@ -60,8 +60,8 @@ pub fn run(args: &Args, pairs: &Path, out: &Path) -> Result<()> {
     let precision = if matches!(evaluator, Evaluator::Cpu) { "f64" } else { "f32" };
     if args.json {
         print_json(&json!({
-            "subject": plan.subject, "parameters": plan.parameters(), "unit": plan.quantity.unit,
-            "channels": plan.channels, "device": line, "precision": precision,
+            "subject": plan.subject(), "parameters": plan.parameters(), "unit": plan.quantity().unit,
+            "channels": plan.channels(), "device": line, "precision": precision,
             "pairs": pairs, "out": out, "points": done, "not_finite_or_negative": insane, "first": first,
             "seconds": { "all": all, "read": seconds.read, "evaluate": seconds.evaluate, "write": seconds.write },
         }))?;
@@ -69,7 +69,7 @@ pub fn run(args: &Args, pairs: &Path, out: &Path) -> Result<()> {
         print(&format!("{HEADING}device{HEADING:#}  {line}"))?;
         print(&format!(
             "f({}) at {done} pairs in {}: {all:.2} s (read {:.2}, evaluate {:.2}, write {:.2})",
-            plan.subject,
+            plan.subject(),
             out.display(),
             seconds.read,
             seconds.evaluate,

@@ -34,10 +34,10 @@ pub fn run(args: &Args, angles: &Angles) -> Result<()> {
     angles.check()?;
     let (evaluator, line) = Evaluator::choose(&args.device)?;
     let mut value = Vec::new();
-    Points::new(&evaluator, &plan.lobes)?.evaluate(&[*angles], &mut value)?;
+    Points::new(&evaluator, plan.lobes())?.evaluate(&[*angles], &mut value)?;
     let reference = check::reference(&plan, 0);
     let difference = relative_difference(&value, &reference);
-    let factors: Vec<_> = plan.lobes.iter().filter_map(|lobe| factors(lobe, angles)).collect();
+    let factors: Vec<_> = plan.lobes().iter().filter_map(|lobe| factors(lobe, angles)).collect();
     // As everywhere: f diverges where both directions graze.
     let mu_i = angles.theta_i.cos().max(MU_MIN);
     let f_cos: Vec<_> = value.iter().map(|&f| f64::from(f) * mu_i).collect();
@@ -47,16 +47,16 @@ pub fn run(args: &Args, angles: &Angles) -> Result<()> {
 
     if args.json {
         print_json(&json!({
-            "subject": plan.subject, "parameters": plan.parameters(), "unit": plan.quantity.unit,
+            "subject": plan.subject(), "parameters": plan.parameters(), "unit": plan.quantity().unit,
             "theta_i": angles.theta_i, "phi_i": angles.phi_i, "theta_e": angles.theta_e, "phi_e": angles.phi_e,
             "delta_phi": delta_phi,
-            "channels": plan.channels, "device": line, "value": value, "precision": precision,
+            "channels": plan.channels(), "device": line, "value": value, "precision": precision,
             "reference": reference, "relative_difference": difference,
             "f_cos_theta_i": f_cos, "factors": factors,
         }))?;
     } else {
         let value: Vec<_> = value.iter().copied().map(f64::from).collect();
-        print(&format!("{HEADING}f({}){HEADING:#} in sr⁻¹, δφ = {delta_phi} rad", plan.subject))?;
+        print(&format!("{HEADING}f({}){HEADING:#} in sr⁻¹, δφ = {delta_phi} rad", plan.subject()))?;
         print(&format!("device      {}    {line}", by_channel(&plan, &value)))?;
         print(&format!("reference   {}    f64", by_channel(&plan, &reference)))?;
         print(&format!("difference  {difference:.1e} relative"))?;
@@ -71,7 +71,7 @@ pub fn run(args: &Args, angles: &Angles) -> Result<()> {
     if value.iter().copied().all(is_sane) {
         return Ok(());
     }
-    Err(Error::Promise(format!("f({}) is not finite, or negative", plan.subject)))
+    Err(Error::Promise(format!("f({}) is not finite, or negative", plan.subject())))
 }
 
 /// The largest of the channels; NaN if any is.
@@ -82,13 +82,13 @@ fn relative_difference(value: &[f32], reference: &[f64]) -> f64 {
 }
 
 fn factors(lobe: &Lobe, angles: &Angles) -> Option<Factors> {
-    let factors = lobe.model.reference?.factors(&reference_angles(angles), &lobe.setting_at(None))?;
+    let factors = lobe.model().reference?.factors(&reference_angles(angles), &lobe.setting_at(None).ok()?)?;
     let f = |&[a, b]: &[f64; 2]| a * factors.f[0] + b * factors.f[1];
-    let f = lobe.weights.iter().map(f).collect();
-    Some(Factors { model: lobe.model.name, d: factors.d, g2: factors.g2, f })
+    let f = lobe.weights().iter().map(f).collect();
+    Some(Factors { model: lobe.model().name, d: factors.d, g2: factors.g2, f })
 }
 
 fn by_channel(plan: &TablePlan, values: &[f64]) -> String {
-    let words: Vec<_> = plan.channels.iter().zip(values).map(|(c, v)| format!("{c} = {v:.8e}")).collect();
+    let words: Vec<_> = plan.channels().iter().zip(values).map(|(c, v)| format!("{c} = {v:.8e}")).collect();
     words.join("  ")
 }

@@ -135,5 +135,5 @@ fn ball(
 }
 
 fn is_delta(lobe: &Lobe) -> bool {
-    lobe.model.is_delta_at(lobe.roughness.unwrap_or(0.0))
+    lobe.is_delta()
 }

@@ -69,7 +69,7 @@ impl Slice<'_> {
     /// What tells this plane from the others: its channel and its values of the axes `spread`.
     pub fn heading(&self, spread: &[usize]) -> String {
         let axes = &self.table.axes;
-        let place = |&k: &usize| scale::in_words(axes[k].variable, axes[k].values[self.at[k]]);
+        let place = |&k: &usize| scale::in_words(axes[k].variable(), axes[k].values()[self.at[k]]);
         let mut words: Vec<_> = spread.iter().map(place).collect();
         if let Shown::Channel(c) = self.shown
             && self.table.channels.len() > 1
@@ -101,7 +101,7 @@ pub(crate) fn heat_map(canvas: &mut Canvas, frame: Frame, slice: &Slice, scale: 
 fn cells(axis: &Axis, pixels: usize) -> Vec<(usize, usize)> {
     let scale = Scale::of_axis(axis);
     let middle = |pair: &[f64]| scale.at(0.5 * (pair[0] + pair[1]));
-    let edges: Vec<_> = axis.values.windows(2).map(middle).collect();
+    let edges: Vec<_> = axis.values().windows(2).map(middle).collect();
     let cell = |u: f64| edges.partition_point(|&edge| edge <= u);
     let n = pixels as f64;
     (0..pixels).map(|p| (cell((p as f64 + 0.01) / n), cell((p as f64 + 0.99) / n))).collect()

@@ -24,8 +24,8 @@ pub(crate) const DECADES: i32 = 7;
 impl Scale {
     /// The scale of an axis of a table: its range, or some room around a single point.
     pub fn of_axis(axis: &Axis) -> Self {
-        let kind = if axis.variable.unit() == "rad" { Kind::Degrees } else { Kind::Linear };
-        let [a, b] = axis.range;
+        let kind = if axis.variable().unit() == "rad" { Kind::Degrees } else { Kind::Linear };
+        let [a, b] = axis.range();
         Self { range: if a < b { [a, b] } else { [a - 0.5, b + 0.5] }, kind }
     }
 

@@ -132,8 +132,8 @@ pub fn measure_model(
     })?;
     let unit = [[1.0, 0.0], [0.0, 1.0]];
     let channels = model.components.len();
-    let lobe = Lobe::new(model, model.shape.map(|_| 1.0), unit[..channels].to_vec());
-    let parameters = lobe.parameters;
+    let lobe = Lobe::new(model, model.shape.map(|_| 1.0), unit[..channels].to_vec())?;
+    let parameters = lobe.parameters();
     let mut points = Points::new(evaluator, &[lobe])?;
     let name = |channel: usize, alpha: f64| {
         // The component alone, in the words of gonio eval.

@@ -90,7 +90,7 @@ pub fn study(evaluator: &Evaluator, budget: u64, observer: &dyn Observer) -> Res
     observer.begin("study of angles");
     let model = model::find("ggx")?;
     // F0 = F90 = 1: no Fresnel.
-    let mut points = Points::new(evaluator, &[Lobe::new(model, Some(1.0), vec![[1.0; 2]])])?;
+    let mut points = Points::new(evaluator, &[Lobe::new(model, Some(1.0), vec![[1.0; 2]])?])?;
     let own = |alpha: f64, angles: &[Angles], values: &mut Vec<f32>| points.sweep(&[alpha], angles, values);
     forms.push(form(OWN, "shaders/pair.wgsl", budget, own, observer)?);
     Ok(forms)

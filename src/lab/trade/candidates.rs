@@ -39,11 +39,11 @@ pub(super) fn candidates(
         let stored = |row: Setting| storages(row.2).map(move |storage| (row.clone(), storage));
         for ((setting, rule, tolerance), storage) in method.into_iter().flat_map(stored) {
             let of = |plan: &TablePlan| -> Result<(TablePlan, u64)> {
-                let plan = plan.clone().with_rule(rule)?.with_storage(storage);
+                let plan = plan.clone().with_rule(rule)?.with_storage(storage)?;
                 let plan =
-                    if let Some(tolerance) = tolerance { plan.with_tolerance(tolerance) } else { plan };
+                    if let Some(tolerance) = tolerance { plan.with_tolerance(tolerance)? } else { plan };
                 let evaluations: u64 =
-                    plan.lobes.iter().map(|lobe| Work::new(&plan, lobe).evaluations()).sum();
+                    plan.lobes().iter().map(|lobe| Work::new(&plan, lobe).evaluations()).sum();
                 Ok((plan, evaluations))
             };
             let method = rule.name();

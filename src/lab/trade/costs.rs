@@ -70,13 +70,13 @@ pub fn costs(
         });
         let truth = truth.collect::<Result<Vec<_>>>()?.concat();
         for &tolerance in tolerances {
-            let plan = plan.clone().with_tolerance(tolerance);
+            let plan = plan.clone().with_tolerance(tolerance)?;
             let table = evaluator.bake(&plan, Check::Sample(0), &mut Timings::default(), &Unobserved)?;
             let differences =
                 table.values.iter().zip(&truth).map(|(value, truth): (f64, _)| (value - truth).abs());
             // f64::max loses NaN.
             let error = differences.fold(0.0, |most, x| if x > most || x.is_nan() { x } else { most });
-            let evaluations = Work::new(&plan, &plan.lobes[0]).evaluations() / plan.texels() as u64;
+            let evaluations = Work::new(&plan, &plan.lobes()[0]).evaluations() / plan.texels() as u64;
             costs.push(Cost {
                 model: model.name,
                 quantity: quantity.name,

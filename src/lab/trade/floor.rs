@@ -31,8 +31,8 @@ impl Floor {
 /// a division and a root take several; what a compiler lifts out of the loop is none, nor what interpolates a table
 /// between its integrals. So it is a floor.
 pub(super) fn operations(plan: &TablePlan) -> Option<f64> {
-    let [lobe] = &plan.lobes[..] else { return None };
-    (lobe.model.name == "ggx").then_some(match plan.rule {
+    let [lobe] = &plan.lobes()[..] else { return None };
+    (lobe.model().name == "ggx").then_some(match plan.rule() {
         // ndf_map 12, slope_term 36 with masking 8 and Fresnel 4, the loop of `integral` 4
         Rule::Warped => 52.0,
         // half_vector 10, ndf 5, fresnel 8, their product, weight and sum 7; visibility is lifted

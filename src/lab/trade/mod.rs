@@ -148,13 +148,13 @@ pub fn measure(
     options: &Options,
     observer: &dyn Observer,
 ) -> Result<Trade> {
-    if table.quantity.evaluation == Evaluation::Value {
+    if table.quantity().evaluation == Evaluation::Value {
         let why =
             "values are not integrated and have no methods to compare; give rho_dh, rho_hh or split_sum";
-        return Err(Error::input(format!("table \"{}\": {why}", table.name)));
+        return Err(Error::input(format!("table \"{}\": {why}", table.name())));
     }
     // Each point has a storage of its own.
-    let table = &table.clone().with_storage(Storage::F32);
+    let table = &table.clone().with_storage(Storage::F32)?;
     let subset = Subset::new(table)?;
     let (candidates, mut left_out) = candidates(table, &subset.plan, options.budget);
     observer.begin("computing the reference");
@@ -176,12 +176,12 @@ pub fn measure(
             Evaluator::Device(_) => candidate.precision,
             Evaluator::Cpu => Precision::F64,
         };
-        let storage = match (candidate.plan.storage, precision) {
+        let storage = match (candidate.plan.storage(), precision) {
             (Storage::F32, Precision::F64) => Storage::F64,
             (storage, _) => storage,
         };
         let timing = time(evaluator, &candidate.plan, precision, &in_budget, &|| observer.advance(0.0))?;
-        match timing.stored(storage, table.quantity.error) {
+        match timing.stored(storage, table.quantity().error) {
             Ok(timing) => {
                 points.push(truth.point(table, &subset, candidate, timing, (precision, storage), rates));
             }
@@ -215,9 +215,9 @@ pub fn measure(
 
 /// What is measured; not by which rule.
 fn in_words(table: &TablePlan) -> String {
-    let axes: Vec<_> = table.axes.iter().map(|a| format!("{} {}", a.variable.name(), a.len())).collect();
+    let axes: Vec<_> = table.axes().iter().map(|a| format!("{} {}", a.variable().name(), a.len())).collect();
     let over = if axes.is_empty() { String::new() } else { format!(" over {}", axes.join(" × ")) };
-    format!("{} of {}{over}", table.quantity.name, table.subject)
+    format!("{} of {}{over}", table.quantity().name, table.subject())
 }
 
 /// The reference's channels, by texel of the whole table.
@@ -230,10 +230,10 @@ impl Truth {
         all: bool,
         tick: &(impl Fn(f64) -> Result<()> + Sync),
     ) -> Result<Self> {
-        if table.lobes.iter().any(|lobe| lobe.model.reference.is_none()) {
+        if table.lobes().iter().any(|lobe| lobe.model().reference.is_none()) {
             return Err(Error::input(format!(
                 "table \"{}\": a lobe has no reference to compare with",
-                table.name
+                table.name()
             )));
         }
         let texels = if all { (0..table.texels()).collect() } else { subset.texels.clone() };
@@ -256,7 +256,7 @@ impl Truth {
         rates: Option<crate::backend::gpu::Rates>,
     ) -> Point {
         let Candidate { method, setting, plan, whole, evaluations, .. } = candidate;
-        let channels = table.channels.len();
+        let channels = table.channels().len();
         let differences = |(at, texel): (usize, usize)| {
             let truth = self.0[&texel].iter().enumerate();
             truth.map(|(c, truth)| (timing.values.get(at * channels + c) - truth).abs()).collect::<Vec<_>>()
@@ -340,7 +340,7 @@ fn headline(
     let plan = |p: &Point| -> Result<TablePlan> {
         let (rule, tolerance) = candidates::setting(p.method, &p.setting)
             .ok_or_else(|| Error::Internal(format!("no method {} {}", p.method, p.setting)))?;
-        Ok(table.clone().with_rule(rule)?.with_tolerance(tolerance.unwrap_or(table.tolerance)))
+        Ok(table.clone().with_rule(rule)?.with_tolerance(tolerance.unwrap_or(table.tolerance()))?)
     };
     let (times, measured) = if theirs.extrapolated {
         ([ours, theirs].map(|p| vec![p.table_seconds]), false)

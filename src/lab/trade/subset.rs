@@ -22,16 +22,16 @@ const SEED: u32 = 0x9e37_79b9;
 
 impl Subset {
     pub fn new(table: &TablePlan) -> Result<Self> {
-        let dimensions = table.axes.len().max(1) as f64;
+        let dimensions = table.axes().len().max(1) as f64;
         let strata = TEXELS.powf(1.0 / dimensions).ceil() as usize;
         let mut random = SEED;
         let picks: Vec<Vec<usize>> =
-            table.axes.iter().map(|axis| pick(axis.len(), strata, &mut random)).collect();
+            table.axes().iter().map(|axis| pick(axis.len(), strata, &mut random)).collect();
         let listed = |(axis, picks): (&Axis, &Vec<usize>)| {
-            Axis::listed(axis.variable, picks.iter().map(|&k| axis.values[k]).collect())
+            Axis::listed(axis.variable(), picks.iter().map(|&k| axis.values()[k]).collect())
         };
-        let axes = table.axes.iter().zip(&picks).map(listed).collect::<Result<Vec<_>>>()?;
-        let plan = TablePlan { axes, ..table.clone() };
+        let axes = table.axes().iter().zip(&picks).map(listed).collect::<Result<Vec<_>>>()?;
+        let plan = table.at_samples(axes);
         let whole = |texel| {
             let at = indices(&plan.shape(), texel);
             let index = at.iter().zip(&picks).map(|(&k, picks)| picks[k]);
@@ -93,7 +93,10 @@ mod tests {
         for (k, &texel) in subset.texels.iter().enumerate() {
             let (small, large) = (indices(&subset.plan.shape(), k), indices(&table.shape(), texel));
             for axis in 0..2 {
-                assert_eq!(subset.plan.axes[axis].values[small[axis]], table.axes[axis].values[large[axis]]);
+                assert_eq!(
+                    subset.plan.axes()[axis].values()[small[axis]],
+                    table.axes()[axis].values()[large[axis]]
+                );
             }
         }
         assert_eq!(pick(5, 32, &mut 1), [0, 1, 2, 3, 4]);

@@ -104,7 +104,7 @@ impl<'a> Warm<'a> {
             Evaluator::Device(device) => Self::Device(device.warm(plan, precision)?),
             Evaluator::Cpu => {
                 let start = Instant::now();
-                plan.lobes.iter().for_each(|lobe| drop(Work::new(plan, lobe)));
+                plan.lobes().iter().for_each(|lobe| drop(Work::new(plan, lobe)));
                 Self::Cpu { plan, prepare: start.elapsed().as_secs_f64() }
             }
         })

@@ -73,7 +73,7 @@ impl Order<'_> {
     ) -> Result<Truths> {
         let shape: Vec<_> = axes.iter().map(Axis::len).collect();
         let texels = match self.check {
-            _ if lobes.iter().any(|lobe| lobe.model.reference.is_none()) => Vec::new(),
+            _ if lobes.iter().any(|lobe| lobe.model().reference.is_none()) => Vec::new(),
             Check::All => (0..shape.iter().product()).collect(),
             Check::Sample(n) => sample(&shape, n),
         };
@@ -183,8 +183,8 @@ fn normals(axes: &[Axis; 2]) -> Vec<[f64; 3]> {
 }
 
 fn frames(theta: &Axis, phi: &Axis) -> Vec<Frame> {
-    let row = |&theta: &f64| phi.values.iter().map(move |&phi| Frame::new(theta, phi));
-    theta.values.iter().flat_map(row).collect()
+    let row = |&theta: &f64| phi.values().iter().map(move |&phi| Frame::new(theta, phi));
+    theta.values().iter().flat_map(row).collect()
 }
 
 /// The largest share of a value that is in doubt.

@@ -27,7 +27,8 @@ impl Order<'_> {
         stages: &mut Timings,
     ) -> Result<[Table; 2]> {
         let frames = frames(&axes[0], &axes[1]);
-        let directions = || axes[2].values.iter().flat_map(|&t| axes[3].values.iter().map(move |&p| (t, p)));
+        let directions =
+            || axes[2].values().iter().flat_map(|&t| axes[3].values().iter().map(move |&p| (t, p)));
         let views: Vec<_> = frames
             .iter()
             .flat_map(|&frame| directions().map(move |(theta_e, phi_e)| View { frame, theta_e, phi_e }))
@@ -98,15 +99,15 @@ impl Order<'_> {
             let angles = Angles { theta_i, phi_i, theta_e, phi_e };
             weighed(&values, |lobe| reference_of(lobe, &angles))
         };
-        let width = values.iter().filter_map(|lobe| Some(lobe.model.shape?.measure(lobe.roughness?)));
+        let width = values.iter().filter_map(|lobe| Some(lobe.model().shape?.measure(lobe.roughness()?)));
         let width = width.fold(1.0, f64::min);
         let mut sum = [0.0; 3];
         if !values.is_empty() {
             sum = reference::exitant(self.light, &view.frame, (theta_e, phi_e), width, &f);
         }
-        let mirrored = weighed(&deltas, |lobe| match lobe.model.reference {
-            Some(reference) => reference.rho_dh(theta_e.cos(), &lobe.setting_at(None)),
-            None => [f64::NAN; 2],
+        let mirrored = weighed(&deltas, |lobe| match (lobe.model().reference, lobe.setting_at(None)) {
+            (Some(reference), Ok(setting)) => reference.rho_dh(theta_e.cos(), &setting),
+            _ => [f64::NAN; 2],
         });
         let seen = self.light.radiance(view.mirror());
         (0..3).for_each(|c| sum[c] += seen[c] * mirrored[c]);
@@ -118,10 +119,10 @@ impl Order<'_> {
 pub(super) fn weighed(lobes: &[&Lobe], of: impl Fn(&Lobe) -> [f64; 2]) -> [f64; 3] {
     lobes.iter().fold([0.0; 3], |sum, lobe| {
         let [a, b] = of(lobe);
-        std::array::from_fn(|c| sum[c] + lobe.weights[c][0] * a + lobe.weights[c][1] * b)
+        std::array::from_fn(|c| sum[c] + lobe.weights()[c][0] * a + lobe.weights()[c][1] * b)
     })
 }
 
 fn is_delta(lobe: &Lobe) -> bool {
-    lobe.model.is_delta_at(lobe.roughness.unwrap_or(0.0))
+    lobe.is_delta()
 }

@@ -67,7 +67,7 @@ impl Order<'_> {
 
     /// M of some texels by the reference.
     fn radiosity_truths(&self, axes: &[Axis], lobes: &[Lobe], frames: &[Frame]) -> Result<Truths> {
-        let known = lobes.iter().all(|lobe| lobe.model.reference.is_some());
+        let known = lobes.iter().all(|lobe| lobe.model().reference.is_some());
         if !known || self.check == Check::Sample(0) {
             return Ok(Vec::new());
         }

@@ -26,6 +26,10 @@ struct Job {
 impl Device {
     /// The coefficients of a map's radiance: as [`Factors::sum`], in f32.
     pub(crate) fn harmonics(&self, factors: &Factors) -> Result<Coefficients> {
+        self.guarded(|| self.harmonics_unguarded(factors))
+    }
+
+    fn harmonics_unguarded(&self, factors: &Factors) -> Result<Coefficients> {
         let map = factors.map;
         let (width, height) = (map.width(), map.height());
         let shares = width.div_ceil(SHARE);

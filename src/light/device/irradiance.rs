@@ -38,6 +38,16 @@ impl Device {
         split: u32,
         tick: &dyn Fn(f64) -> Result<()>,
     ) -> Result<Vec<[f64; 3]>> {
+        self.guarded(|| self.irradiance_unguarded(map, normals, split, tick))
+    }
+
+    fn irradiance_unguarded(
+        &self,
+        map: &Prepared,
+        normals: &[[f64; 3]],
+        split: u32,
+        tick: &dyn Fn(f64) -> Result<()>,
+    ) -> Result<Vec<[f64; 3]>> {
         let (width, height) = (map.map.width(), map.map.height());
         let mut sums = vec![[0.0; 3]; normals.len()];
         if normals.is_empty() {

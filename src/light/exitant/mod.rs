@@ -64,8 +64,8 @@ pub fn radiance(
     observer: &dyn Observer,
 ) -> Result<Vec<Integrated>> {
     let mut all = vec![Integrated { value: [0.0; 3], error: 0.0 }; views.len()];
-    let is_flat = |lobe: &&Lobe| lobe.model.name == "lambert" && lobe.factors.is_empty();
-    let is_delta = |lobe: &&Lobe| lobe.model.is_delta_at(lobe.roughness.unwrap_or(0.0));
+    let is_flat = |lobe: &&Lobe| lobe.model().name == "lambert" && lobe.factors().is_empty();
+    let is_delta = |lobe: &&Lobe| lobe.is_delta();
     let flat: Vec<_> = lobes.iter().filter(is_flat).collect();
     let deltas: Vec<_> = lobes.iter().filter(is_delta).collect();
     let rest: Vec<_> = lobes.iter().filter(|lobe| !is_flat(lobe) && !is_delta(lobe)).cloned().collect();
@@ -75,7 +75,7 @@ pub fn radiance(
         let irradiances = irradiance_of(evaluator, light, &normals)?;
         for (one, e) in all.iter_mut().zip(&irradiances) {
             for lobe in &flat {
-                (0..3).for_each(|c| one.value[c] += lobe.weights[c][0] * e[c] / PI);
+                (0..3).for_each(|c| one.value[c] += lobe.weights()[c][0] * e[c] / PI);
             }
         }
     }
@@ -83,7 +83,9 @@ pub fn radiance(
         for (one, view) in all.iter_mut().zip(views) {
             let [a, b] = delta(lobe, view.theta_e)?;
             let seen = light.radiance(view.mirror());
-            (0..3).for_each(|c| one.value[c] += seen[c] * (lobe.weights[c][0] * a + lobe.weights[c][1] * b));
+            (0..3).for_each(|c| {
+                one.value[c] += seen[c] * (lobe.weights()[c][0] * a + lobe.weights()[c][1] * b)
+            });
         }
     }
     if !rest.is_empty() {
@@ -101,18 +103,18 @@ pub fn radiance(
 
 /// What a delta reflects of L(r): A and B at θe, as its integrals have them.
 fn delta(lobe: &Lobe, theta_e: f64) -> Result<[f64; 2]> {
-    let (mu, setting) = (theta_e.cos().max(0.0), lobe.setting_at(None));
-    match lobe.model.integral {
+    let (mu, setting) = (theta_e.cos().max(0.0), lobe.setting_at(None)?);
+    match lobe.model().integral {
         Integral::Delta(directional) => Ok(directional(mu, &setting)),
         Integral::Slopes(slopes) => Ok((slopes.mirror_limit)(mu, &setting)),
-        _ => Err(Error::input(format!("{} at this roughness is a delta; give it more", lobe.model.name))),
+        _ => Err(Error::input(format!("{} at this roughness is a delta; give it more", lobe.model().name))),
     }
 }
 
 /// About half the width of a lobe around the mirror direction, rad: α, and less where it is stretched.
 fn width(lobe: &Lobe) -> f64 {
-    let stretched = if lobe.model.is_anisotropic() { 0.1 } else { 1.0 };
-    match (lobe.model.shape, lobe.roughness) {
+    let stretched = if lobe.model().is_anisotropic() { 0.1 } else { 1.0 };
+    match (lobe.model().shape, lobe.roughness()) {
         (Some(shape), Some(roughness)) => shape.measure(roughness).clamp(1e-6, 1.0) * stretched,
         _ => 1.0,
     }

@@ -21,7 +21,7 @@ pub fn prefiltered(
     tolerance: f64,
     observer: &dyn Observer,
 ) -> Result<Vec<[f64; 3]>> {
-    let plain = Lobe { weights: vec![[1.0; 2]; 3], ..lobe.clone() };
+    let plain = lobe.clone().with_weights(vec![[1.0; 2]; 3])?;
     let along = |&r: &[f64; 3]| {
         let (theta, phi) = angles(r);
         View { frame: Frame::new(theta, phi), theta_e: 0.0, phi_e: 0.0 }
@@ -55,7 +55,7 @@ pub fn split_sum(
         let mut own: Vec<View> = Vec::new();
         let at = |view: &View| View { frame: Frame::new(0.0, 0.0), ..*view };
         let same = |a: &View, b: &View| {
-            a.theta_e == b.theta_e && (a.phi_e == b.phi_e || !lobe.model.is_anisotropic())
+            a.theta_e == b.theta_e && (a.phi_e == b.phi_e || !lobe.model().is_anisotropic())
         };
         for view in views.iter().map(at) {
             if !own.iter().any(|known| same(known, &view)) {
@@ -63,7 +63,7 @@ pub fn split_sum(
             }
         }
         let terms = radiance(evaluator, std::slice::from_ref(lobe), &white, &own, tolerance, observer)?;
-        let incident = if lobe.model.shape.is_some() || lobe.model.is_delta() {
+        let incident = if lobe.model().shape.is_some() || lobe.model().is_delta() {
             let mirrors: Vec<_> = views.iter().map(View::mirror).collect();
             prefiltered(evaluator, lobe, light, &mirrors, tolerance, observer)?
         } else {

@@ -59,7 +59,8 @@ impl Albedo {
     fn new(evaluator: &Evaluator, scene: &Scene, material: &str) -> Result<Self> {
         let axis =
             Axis::new(Variable::ThetaI, Self::SAMPLES, [0.0, FRAC_PI_2], Positions::Nodes, Mapping::Linear)?;
-        let plan = TablePlan::material(material, &RHO_DH, scene, material, vec![axis])?.with_tolerance(1e-6);
+        let plan =
+            TablePlan::material(material, &RHO_DH, scene, material, vec![axis])?.with_tolerance(1e-6)?;
         let table = evaluator.bake(&plan, Check::Sample(0), &mut Timings::default(), &Unobserved)?;
         let values = (0..table.texels()).map(|k| std::array::from_fn(|c| table.value(k, c))).collect();
         Ok(Self { values })
@@ -76,7 +77,7 @@ impl Albedo {
 
 /// ρ_hh, R, G, B.
 fn mean_albedo(evaluator: &Evaluator, scene: &Scene, material: &str) -> Result<[f64; 3]> {
-    let plan = TablePlan::material(material, &RHO_HH, scene, material, Vec::new())?.with_tolerance(1e-7);
+    let plan = TablePlan::material(material, &RHO_HH, scene, material, Vec::new())?.with_tolerance(1e-7)?;
     let table = evaluator.bake(&plan, Check::Sample(0), &mut Timings::default(), &Unobserved)?;
     Ok(std::array::from_fn(|c| table.value(0, c)))
 }

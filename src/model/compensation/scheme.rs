@@ -73,19 +73,19 @@ impl Compensation {
         if self == Self::None {
             return Ok(vec![lobe]);
         }
-        let refuse = |why: &str| Err(Error::input(format!("compensation of {}: {why}", lobe.model.name)));
-        let (Some(made), true) = (lobe.model.microfacet, Self::is_for(lobe.model)) else {
+        let refuse = |why: &str| Err(Error::input(format!("compensation of {}: {why}", lobe.model().name)));
+        let (Some(made), true) = (lobe.model().microfacet, Self::is_for(lobe.model())) else {
             return refuse("it is for lobes of microfacets with a roughness");
         };
         let mut of = Albedo {
-            model: lobe.model.with_terms(None, Some("none"))?,
+            model: lobe.model().with_terms(None, Some("none"))?,
             roughness: None,
-            parameters: lobe.parameters,
+            parameters: lobe.parameters(),
         };
         // Those of its own; the Fresnel term's are nothing to it.
         of.parameters = of.model.defaults();
         for parameter in of.model.parameters {
-            of.parameters[parameter.place] = lobe.parameters[parameter.place];
+            of.parameters[parameter.place] = lobe.parameters()[parameter.place];
         }
         if let Some(why) = of.refused() {
             return refuse(why);
@@ -98,14 +98,14 @@ impl Compensation {
         let setting = lobe.setting(0.0);
         let fresnel = |mu| fresnel(mu, &setting);
         // F of each channel: weights are part of it where they are F0 and F90, and else dim what there is.
-        let splits = lobe.model.components.len() > 1;
+        let splits = lobe.model().components.len() > 1;
         let mixed =
             |[a, b]: [f64; 2], weight: &[f64; 2]| if splits { weight[0] * a + weight[1] * b } else { a };
         let components = match self {
             Self::KullaConty => [0, 1].map(|k| mean(&|mu| fresnel(mu)[k])),
             _ => fresnel(1.0),
         };
-        let reflectances: Vec<_> = lobe.weights.iter().map(|weight| mixed(components, weight)).collect();
+        let reflectances: Vec<_> = lobe.weights().iter().map(|weight| mixed(components, weight)).collect();
         let mut lobes = if self == Self::KullaConty { vec![lobe.clone()] } else { Vec::new() };
         let mut taken: Vec<f64> = Vec::new();
         for &f in &reflectances {
@@ -113,23 +113,23 @@ impl Compensation {
                 continue;
             }
             taken.push(f);
-            let channels = lobe.weights.iter().zip(&reflectances);
+            let channels = lobe.weights().iter().zip(&reflectances);
             let kept = |weight: [f64; 2], own: f64| if own == f { weight } else { [0.0; 2] };
             lobes.push(match self {
                 Self::KullaConty => {
                     // The lobe's own roughness, which a diffuse lobe has not.
-                    let of = Albedo { roughness: lobe.roughness, ..of.clone() };
+                    let of = Albedo { roughness: lobe.roughness(), ..of.clone() };
                     let weight = |weight: &[f64; 2]| [if splits { 1.0 } else { weight[0] }, 0.0];
                     let weights = channels.map(|(own, &f)| kept(weight(own), f)).collect();
-                    let mut factors = lobe.factors.clone();
+                    let mut factors = lobe.factors().to_vec();
                     factors.push(Factor::Missing { of, f_avg: f });
-                    Lobe { factors, ..Lobe::new(model::find("lambert")?, None, weights) }
+                    Lobe::new(model::find("lambert")?, None, weights)?.with_factors(factors)
                 }
                 _ => {
                     let weights = channels.map(|(&own, &f)| kept(own, f)).collect();
-                    let mut factors = lobe.factors.clone();
+                    let mut factors = lobe.factors().to_vec();
                     factors.push(Factor::Restored { of: of.clone(), f0: f });
-                    Lobe { weights, factors, ..lobe.clone() }
+                    lobe.clone().with_weights(weights)?.with_factors(factors)
                 }
             });
         }

@@ -66,8 +66,8 @@ pub fn basis(
     let plan = TablePlan::basis("test", quantity, model, None, axes).unwrap();
     let exact = [model.integral_f32(), model.value_f32]
         .into_iter()
-        .find(|&t| plan.clone().with_tolerance(t).precision() == Precision::F32);
-    plan.with_tolerance(exact.unwrap())
+        .find(|&t| plan.clone().with_tolerance(t).unwrap().precision() == Precision::F32);
+    plan.with_tolerance(exact.unwrap()).unwrap()
 }
 
 pub fn bake(evaluator: &Evaluator, plan: &TablePlan, check: Check) -> Table {
@@ -88,12 +88,12 @@ impl Tried {
 
     /// The table at a tolerance, which no texel may miss by more than `beyond`.
     pub fn assert_meets(&self, evaluator: &Evaluator, tolerance: f64, beyond: f64) -> Table {
-        let plan = self.plan.clone().with_tolerance(tolerance);
+        let plan = self.plan.clone().with_tolerance(tolerance).unwrap();
         let table = bake(evaluator, &plan, Check::Sample(0));
         for (texel, truth) in self.truth.iter().enumerate() {
             for (value, truth) in table.texel(texel).into_iter().zip(truth) {
                 let error = (value - truth).abs();
-                let set = &plan.lobes[0].parameters;
+                let set = &plan.lobes()[0].parameters();
                 // NaN is no number that is small enough.
                 let place = table.place(texel);
                 assert!(
