@@ -19,7 +19,7 @@
 //! | [`plan`] | which tables, over which axes, by which rule: plain data | devices, files |
 //! | [`models`] | the parts and models: WGSL, and its f64 twin for the CPU path | the reference |
 //! | [`gpu`] | composing, validating and recording the kernels that a plan needs | scenes, files |
-//! | [`mod@reference`] | the textbook's formulas in f64, adaptive quadrature | everything else |
+//! | [`reference`] | the textbook's formulas in f64, adaptive quadrature | everything else |
 //! | [`check`] | a table's texels against the reference | how they were computed |
 //! | [`promises`] | what a BRDF promises, and the worst input that breaks it | how it is evaluated |
 //! | [`trade`] | every method at every cost: time and error, and the front | files, devices |
@@ -89,11 +89,11 @@ pub mod lab;
 pub mod light;
 pub mod model;
 pub mod plan;
-pub mod reference;
 pub mod scene;
 pub mod shader;
 pub mod table;
 pub mod verify;
 
 pub use base::error::{Error, Result};
+pub use gonio_reference as reference;
 pub use wgpu;

@@ -5,15 +5,13 @@ use crate::bake::{Evaluator, Unobserved};
 use crate::base::error::{Error, Result};
 use crate::base::precision::{INTEGRAL_F32, VALUE_F32};
 use crate::base::timings::Timings;
-use crate::check::Check;
-use crate::check::reference_angles;
+use crate::check::{Check, Fixed, ReferenceLobe, reference_angles};
 use crate::integrate::scale::Scale;
 use crate::model::compensation::{Compensation, Factor};
 use crate::model::lobe::Lobe;
 use crate::model::parameters::Parameters;
 use crate::model::{Integral, Violation};
 use crate::plan::TablePlan;
-use crate::reference;
 use crate::scene::Material;
 use crate::scene::planner::constant_lobes;
 use crate::table::Table;
@@ -186,12 +184,8 @@ impl<'a> Sum<'a> {
     fn reference_rho(&self, setting: &[f64], theta_i: f64) -> Option<f64> {
         let mut rho = [0.0; CHANNELS];
         for lobe in &(self.lobes)(setting).ok()? {
-            let (reference, setting, mu) =
-                (lobe.model.reference?, lobe.setting_at(None), theta_i.cos().max(0.0));
-            let [a, b] = match &lobe.factors[..] {
-                [] => reference.rho_dh(mu, &setting),
-                _ => reference::Product::new(lobe, None)?.rho_dh(reference, mu, &setting, false),
-            };
+            let mu = theta_i.cos().max(0.0);
+            let [a, b] = ReferenceLobe::new(lobe, None)?.rho_dh(mu, 0.0, Fixed::Incident);
             for (rho, [weight_a, weight_b]) in rho.iter_mut().zip(&lobe.weights) {
                 *rho += weight_a * a + weight_b * b;
             }
@@ -262,12 +256,7 @@ impl Subject for Sum<'_> {
             if lobe.model.refused(&lobe.parameters).is_some() {
                 return None; // nothing is promised of it
             }
-            let ab = lobe.model.reference?.brdf(&at, &lobe.setting_at(None))?;
-            let factor = match &lobe.factors[..] {
-                [] => 1.0,
-                _ => reference::Product::new(lobe, None)?.at(at.theta_i.cos(), at.theta_e.cos()),
-            };
-            let [a, b] = ab.map(|x| x * factor);
+            let [a, b] = ReferenceLobe::new(lobe, None)?.brdf(&at)?;
             for (f, [weight_a, weight_b]) in f.iter_mut().zip(&lobe.weights) {
                 *f += weight_a * a + weight_b * b;
             }
