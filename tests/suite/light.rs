@@ -4,7 +4,7 @@
 //! (8) reciprocity, (9) energy, (11) outgoing radiance, (12) radiosity, (13) the ideal mirror. Which number belongs to
 //! which is inferred from their order there.
 
-use crate::common::{device, evaluators, golden, listed, nodes, reference_model};
+use crate::common::{device, evaluators, golden, listed, model, nodes, reference_model};
 use gonio::bake::{Evaluator, Unobserved};
 use gonio::base::precision::Precision;
 use gonio::base::quadrature::gauss_legendre;
@@ -16,6 +16,7 @@ use gonio::light::exitant::{Integrated, View, prefiltered, radiance, radiosity, 
 use gonio::light::harmonics::{TRUNCATION, coefficients, convolved, evaluate};
 use gonio::light::irradiance::in_closed_form;
 use gonio::light::{Disk, Environment, Frame, Light, Sky, direction, read};
+use gonio::model::compensation::Factor;
 use gonio::model::lobe::Lobe;
 use gonio::reference::{Parameters, Setting, light as reference};
 use gonio::scene::{Scene, parse_recipe};
@@ -382,6 +383,20 @@ fn equation_11_outgoing_radiance() {
         for (a, b) in a.iter().zip(&b) {
             close3(a.value, b.value, 2e-3);
         }
+    }
+}
+
+/// A coat without roughness is a mirror that a factor dims: Le = w (0.04 + 0.96 (1 − μe)⁵) L(r).
+#[test]
+fn a_smooth_coat_reflects_its_fresnel_term() {
+    let mut coat = Lobe::new(model("ggx-smith-correlated-none"), Some(0.0), vec![[1.0, 0.0]; 3]);
+    coat.factors = vec![Factor::Coat { weight: 0.5 }];
+    let light = Light::Constant([2.0; 3]);
+    for theta_e in [0.0f64, 0.8, 1.4] {
+        let view = View { frame: Frame::new(0.5, 1.0), theta_e, phi_e: 0.3 };
+        let reflected = 0.5 * (0.04 + 0.96 * (1.0 - theta_e.cos()).powi(5));
+        let lit = le(device(), &[coat.clone()], &light, &[view], 1e-4);
+        close3(lit[0].value, [2.0 * reflected; 3], 1e-9);
     }
 }
 
