@@ -10,7 +10,7 @@ use crate::base::error::{Error, Result};
 use crate::model::Model;
 use crate::model::compensation::Albedo;
 use crate::model::lobe::Lobe;
-use crate::model::parameters::{Parameters, named};
+use crate::model::parameters::Parameters;
 use gonio_reference::{Angles, Factors, Measure, Reference, Refused, Setting};
 use std::sync::{PoisonError, RwLock};
 
@@ -49,7 +49,7 @@ pub(crate) fn reference_parameters(
     model: &Model,
     parameters: &Parameters,
 ) -> std::result::Result<gonio_reference::Parameters, Refused> {
-    gonio_reference::Parameters::named(named(model, parameters))
+    gonio_reference::Parameters::named(model.parameters.iter().map(|p| (p.name, parameters[p.place])))
 }
 
 /// The reference's angles of a pair of directions.

@@ -18,6 +18,7 @@ use crate::table::Table;
 use crate::table::axis::{Axis, Variable};
 use crate::table::quantity::RHO_DH;
 use crate::verify::{Angles, Declared, FAINT, Parameter, Subject, Symmetry, Tolerances, albedo};
+use std::cell::OnceCell;
 use std::f64::consts::FRAC_PI_2;
 
 /// A sum of weighted lobes: a material, or a model alone.
@@ -35,6 +36,8 @@ pub struct Sum<'a> {
     points: Option<Points<'a>>,
     /// The lobes of the setting that was evaluated last.
     last: (Vec<f64>, Vec<Lobe>),
+    /// Those by the reference, once they are asked for.
+    last_references: OnceCell<Option<Vec<ReferenceLobe>>>,
 }
 
 /// The lobes at a setting of the parameters.
@@ -141,7 +144,17 @@ impl<'a> Sum<'a> {
             citation: source.into(),
         });
         let declared = declared.collect();
-        Ok(Self { name, evaluator, whole, parameters, lobes, declared, points, last: (setting, first) })
+        Ok(Self {
+            name,
+            evaluator,
+            whole,
+            parameters,
+            lobes,
+            declared,
+            points,
+            last: (setting, first),
+            last_references: OnceCell::new(),
+        })
     }
 
     /// The relative error of values in f32, the largest over the ends of the parameters.
@@ -207,6 +220,15 @@ impl<'a> Sum<'a> {
     }
 }
 
+/// Lobes by the reference; `None` where one has none, or a model refuses its parameters: nothing is promised of it.
+fn references_of(lobes: &[Lobe]) -> Option<Vec<ReferenceLobe>> {
+    let reference = |lobe: &Lobe| match lobe.model.refused(&lobe.parameters) {
+        Some(_) => None,
+        None => ReferenceLobe::new(lobe, None),
+    };
+    lobes.iter().map(reference).collect()
+}
+
 impl Subject for Sum<'_> {
     fn name(&self) -> String {
         self.name.clone()
@@ -233,6 +255,7 @@ impl Subject for Sum<'_> {
         let points = points.ok_or_else(|| Error::input(format!("{} is a delta: no values", self.name)))?;
         if self.last.0 != setting {
             self.last = (setting.to_vec(), (self.lobes)(setting)?);
+            self.last_references = OnceCell::new();
         }
         points.set(&self.last.1)?;
         let mut values = Vec::new();
@@ -243,20 +266,17 @@ impl Subject for Sum<'_> {
 
     fn reference(&self, setting: &[f64], angles: &Angles) -> Option<Vec<f64>> {
         let at = reference_angles(angles);
-        let new;
-        let lobes = match self.last.0 == setting {
-            true => &self.last.1,
-            false => {
-                new = (self.lobes)(setting).ok()?;
-                &new
-            }
+        let (new_lobes, new_references);
+        let (lobes, references) = if self.last.0 == setting {
+            (&self.last.1, self.last_references.get_or_init(|| references_of(&self.last.1)).as_ref()?)
+        } else {
+            new_lobes = (self.lobes)(setting).ok()?;
+            new_references = references_of(&new_lobes)?;
+            (&new_lobes, &new_references)
         };
         let mut f = vec![0.0; CHANNELS];
-        for lobe in lobes {
-            if lobe.model.refused(&lobe.parameters).is_some() {
-                return None; // nothing is promised of it
-            }
-            let [a, b] = ReferenceLobe::new(lobe, None)?.brdf(&at)?;
+        for (lobe, reference) in lobes.iter().zip(references) {
+            let [a, b] = reference.brdf(&at)?;
             for (f, [weight_a, weight_b]) in f.iter_mut().zip(&lobe.weights) {
                 *f += weight_a * a + weight_b * b;
             }

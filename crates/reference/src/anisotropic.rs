@@ -53,12 +53,12 @@ impl Reference for Anisotropic {
 
     fn rho_hh(&self, setting: &Setting) -> [f64; 2] {
         let mean = |mu: f64| {
-            let at = |k: u32| {
+            let term = |k: u32| {
                 let phi = FRAC_PI_2 * f64::from(k) / f64::from(AZIMUTHS);
                 let weight = if k == 0 || k == AZIMUTHS { 0.5 } else { 1.0 } / f64::from(AZIMUTHS);
                 self.rho_dh_within(1e-7 / mu, mu, phi, setting).map(|rho| weight * rho)
             };
-            (0..=AZIMUTHS).map(at).fold([0.0; 2], |sum, rho| [sum[0] + rho[0], sum[1] + rho[1]])
+            (0..=AZIMUTHS).map(term).fold([0.0; 2], |sum, rho| [sum[0] + rho[0], sum[1] + rho[1]])
         };
         definition::rho_hh_within(1e-7, mean, setting.alpha)
     }
@@ -73,7 +73,7 @@ impl Reference for Anisotropic {
         let turn = angles.phi_i - PI;
         let phi_m = pair.h.y.atan2(pair.h.x) + turn;
         let phi_e = angles.phi_i + PI + angles.delta_phi;
-        let lambda = |tan2, phi| self.ndf.lambda(tan2, towards(axes, phi), &setting.parameters);
+        let lambda = |tan2, phi| self.ndf.lambda(tan2, alpha_towards(axes, phi), &setting.parameters);
         let facet = Facet {
             mu: [pair.mu_i, pair.mu_e],
             lambda: [lambda(pair.tan2_i, angles.phi_i), lambda(pair.tan2_e, phi_e)],
@@ -92,7 +92,7 @@ impl Reference for Anisotropic {
 impl Anisotropic {
     /// Heitz 2014, eq. 83 and 85: tan²θm/α² becomes tan²θm (cos²φm/αx² + sin²φm/αy²), and α² before it αx αy.
     fn d(&self, cos2: f64, tan2: f64, phi: f64, axes: [f64; 2], setting: &Setting) -> f64 {
-        let alpha = across(axes, phi);
+        let alpha = alpha_along(axes, phi);
         self.ndf.d(cos2, tan2, alpha, &setting.parameters) * alpha * alpha / (axes[0] * axes[1])
     }
 
@@ -112,9 +112,9 @@ impl Anisotropic {
             let mut breaks = even_breaks(-reach, reach, PANEL);
             for turn in [-2.0, -1.0, 0.0, 1.0, 2.0] {
                 for width in [-30.0, -10.0, -3.0, -1.0, 0.0, 1.0, 3.0, 10.0, 30.0] {
-                    let at = narrow + turn * PI - phi + width * ratio - centre;
-                    if at.abs() < FRAC_PI_2 {
-                        breaks.push((at / mu).asinh());
+                    let offset = narrow + turn * PI - phi + width * ratio - centre;
+                    if offset.abs() < FRAC_PI_2 {
+                        breaks.push((offset / mu).asinh());
                     }
                 }
             }
@@ -141,9 +141,10 @@ impl Anisotropic {
     ) -> [f64; 2] {
         let axes = axes(setting);
         let (sin_turn, cos_turn) = turn.sin_cos();
-        let alpha = across(axes, phi + turn);
+        let alpha = alpha_along(axes, phi + turn);
         let wo = DVec3::new(sin_of(mu), 0.0, mu);
-        let lambda = |tan2: f64, phi: f64| self.ndf.lambda(tan2, towards(axes, phi), &setting.parameters);
+        let lambda =
+            |tan2: f64, phi: f64| self.ndf.lambda(tan2, alpha_towards(axes, phi), &setting.parameters);
         let lambda_o = lambda((wo.x / wo.z).powi(2), phi);
         let integrand = |v: f64| {
             let sinh = v.sinh();
@@ -181,11 +182,11 @@ fn axes(&Setting { alpha, parameters }: &Setting) -> [f64; 2] {
 }
 
 /// α of slopes along an azimuth.
-fn across([x, y]: [f64; 2], phi: f64) -> f64 {
+fn alpha_along([x, y]: [f64; 2], phi: f64) -> f64 {
     1.0 / (phi.cos() / x).hypot(phi.sin() / y)
 }
 
 /// α that Λ sees from an azimuth: Heitz 2014, eq. 80.
-fn towards([x, y]: [f64; 2], phi: f64) -> f64 {
+fn alpha_towards([x, y]: [f64; 2], phi: f64) -> f64 {
     (phi.cos() * x).hypot(phi.sin() * y)
 }

@@ -23,9 +23,9 @@ pub(super) fn rho_dh_kinked(f: impl Fn(&Angles) -> [f64; 2], mu: f64) -> [f64; 2
 fn rho_dh_between(azimuths: &[f64], f: impl Fn(&Angles) -> [f64; 2], mu: f64) -> [f64; 2] {
     let theta_i = mu.clamp(MIN_MU, 1.0).acos();
     let ring = |theta_e: f64| {
-        let at = |delta_phi| f(&Angles { theta_i, theta_e, delta_phi, phi_i: 0.0 });
+        let integrand = |delta_phi| f(&Angles { theta_i, theta_e, delta_phi, phi_i: 0.0 });
         let weight = 2.0 * theta_e.cos() * theta_e.sin();
-        integrate(at, azimuths, INNER).value_or_nan().map(|ring| weight * ring)
+        integrate(integrand, azimuths, INNER).value_or_nan().map(|ring| weight * ring)
     };
     integrate(ring, &[0.0, theta_i, FRAC_PI_2], OUTER).value_or_nan()
 }

@@ -1,7 +1,7 @@
 //! Exitant radiance and radiosity by their definitions.
 
 use crate::light::albedo::Albedo;
-use crate::light::source::{GAUSS, Source, towards};
+use crate::light::source::{GAUSS, Source, unit_vector};
 use crate::light::{Cell, Frame, Light, peak_of};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
@@ -28,9 +28,10 @@ pub fn exitant(
     f: &dyn Fn(Incident) -> [f64; 3],
 ) -> [f64; 3] {
     let Some(source) = Source::new(light) else { return directional(light, frame, f) };
-    let wo = towards(exit.0, exit.1);
-    let mirror = source.to_own(frame.to_world([-wo.x, -wo.y, wo.z]));
-    let surface = Surface { source: &source, frame, normal: source.to_own(frame.normal()), mirror, width, f };
+    let wo = unit_vector(exit.0, exit.1);
+    let mirror = source.to_local(frame.to_world([-wo.x, -wo.y, wo.z]));
+    let surface =
+        Surface { source: &source, frame, normal: source.to_local(frame.normal()), mirror, width, f };
     let whole = |share: f64| {
         let cells = source.cells().filter(|cell| {
             let is_lit = cell.theta.iter().any(|&theta| source.radiance(cell, theta) != [0.0; 3]);
@@ -75,7 +76,7 @@ impl Surface<'_> {
     fn adaptive(&self, cell: &Cell, tolerance: f64, depth: u32) -> [f64; 3] {
         let [theta, phi] = [cell.theta, cell.phi].map(|[a, b]| 0.5 * (a + b));
         let size = (cell.theta[1] - cell.theta[0]).max((cell.phi[1] - cell.phi[0]) * theta.sin());
-        let away = (towards(theta, phi) - self.mirror).length();
+        let away = (unit_vector(theta, phi) - self.mirror).length();
         let near = away < 2.0 * size && size > 0.25 * self.width;
         let coarse = self.gauss(cell);
         if depth == DEPTH || tolerance.is_infinite() && !near {
@@ -106,7 +107,7 @@ impl Surface<'_> {
             }
             for (y, wy) in GAUSS {
                 let theta = 0.5 * (low + high) + 0.5 * (high - low) * y;
-                let world = self.source.to_world(towards(theta, phi));
+                let world = self.source.to_world(unit_vector(theta, phi));
                 let local = DVec3::from(self.frame.to_local(world.to_array()));
                 if local.z <= 0.0 {
                     continue;
@@ -123,7 +124,7 @@ impl Surface<'_> {
     fn is_below(&self, cell: &Cell) -> bool {
         let [theta, phi] = [cell.theta, cell.phi].map(|[a, b]| 0.5 * (a + b));
         let size = (cell.theta[1] - cell.theta[0]) + (cell.phi[1] - cell.phi[0]);
-        towards(theta, phi).dot(self.normal) < -size
+        unit_vector(theta, phi).dot(self.normal) < -size
     }
 }
 

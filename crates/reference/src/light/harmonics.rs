@@ -1,6 +1,6 @@
 //! Spherical harmonics of a light by their definition: ∫ L Y dω, Y of associated Legendre polynomials.
 
-use crate::light::source::{GAUSS, Source, towards};
+use crate::light::source::{GAUSS, Source, unit_vector};
 use crate::light::{Cell, Light};
 use std::f64::consts::{PI, SQRT_2};
 
@@ -43,7 +43,7 @@ fn add(source: &Source, cell: &Cell, sum: &mut Harmonics) {
         let theta = t + dt * x;
         let light = source.radiance(cell, theta);
         for (y, wy) in GAUSS {
-            let world = source.to_world(towards(theta, p + dp * y));
+            let world = source.to_world(unit_vector(theta, p + dp * y));
             let weight = wx * wy * dt * dp * theta.sin();
             let basis = basis(world.x.hypot(world.y).atan2(world.z), world.y.atan2(world.x));
             for (sum, y) in sum.iter_mut().zip(basis) {

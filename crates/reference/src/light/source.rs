@@ -1,4 +1,4 @@
-//! Where light comes from: cells of latitude and longitude about a pole of the light's own.
+//! A light is split into cells of latitude and longitude about a pole of its frame.
 
 use crate::light::{Cell, Light, Map, Sky};
 use glam::DVec3;
@@ -84,19 +84,19 @@ impl<'a> Source<'a> {
     }
 
     /// A vector of the world in its frame.
-    pub fn to_own(&self, world: [f64; 3]) -> DVec3 {
+    pub fn to_local(&self, world: [f64; 3]) -> DVec3 {
         let world = DVec3::from(world);
         DVec3::from(self.axes.map(|axis| axis.dot(world)))
     }
 
     /// A vector of its frame in the world.
-    pub fn to_world(&self, own: DVec3) -> DVec3 {
-        own.x * self.axes[0] + own.y * self.axes[1] + own.z * self.axes[2]
+    pub fn to_world(&self, local: DVec3) -> DVec3 {
+        local.x * self.axes[0] + local.y * self.axes[1] + local.z * self.axes[2]
     }
 }
 
 /// The unit vector at (θ, φ).
-pub(super) fn towards(theta: f64, phi: f64) -> DVec3 {
+pub(super) fn unit_vector(theta: f64, phi: f64) -> DVec3 {
     let ((st, ct), (sp, cp)) = (theta.sin_cos(), phi.sin_cos());
     DVec3::new(st * cp, st * sp, ct)
 }
