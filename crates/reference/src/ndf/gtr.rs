@@ -43,7 +43,7 @@ mod tests {
     /// γ = 2 is GGX, and γ → 1 goes over into the logarithm of γ = 1, also below the least α of Disney's.
     #[test]
     fn limits_of_the_exponent() {
-        let gamma = |gamma| Parameters { gamma, ..Parameters::DEFAULT };
+        let gamma = |gamma| Parameters::named([("gamma", gamma)]).unwrap();
         for alpha in [1e-6, 1e-3, 0.1, 0.7, 1.0] {
             for tan2_m in [0.0, 1e-14, 1e-6, 0.3, 1e4] {
                 let d = |p: &Parameters| Gtr.d(1.0 / (1.0 + tan2_m), tan2_m, alpha, p);
