@@ -19,7 +19,7 @@
 //! | [`plan`] | which tables, over which axes, by which rule: plain data | devices, files |
 //! | [`models`] | the parts and models: WGSL, and its f64 twin for the CPU path | the reference |
 //! | [`gpu`] | composing, validating and recording the kernels that a plan needs | scenes, files |
-//! | [`reference`] | the textbook's formulas in f64, adaptive quadrature | everything else |
+//! | [`mod@reference`] | the textbook's formulas in f64, adaptive quadrature | everything else |
 //! | [`check`] | a table's texels against the reference | how they were computed |
 //! | [`promises`] | what a BRDF promises, and the worst input that breaks it | how it is evaluated |
 //! | [`trade`] | every method at every cost: time and error, and the front | files, devices |
