@@ -10,14 +10,14 @@ use gonio::bake::{Evaluator, Unobserved};
 use gonio::base::precision::VALUE_F32;
 use gonio::base::quadrature::gauss_legendre;
 use gonio::base::timings::Timings;
-use gonio::check::Check;
+use gonio::check::{self, Check};
 use gonio::model;
 use gonio::model::directions::{Fixed, Map, Sample};
 use gonio::model::lobe::Lobe;
-use gonio::model::parameters::Setting;
+use gonio::model::parameters;
 use gonio::model::{Component, Integral, Model, Part};
 use gonio::plan::TablePlan;
-use gonio::reference::{Angles, MIN_MU, Reference};
+use gonio::reference::{Angles, MIN_MU, Reference, Setting};
 use gonio::table::axis::{Axis, Variable};
 use gonio::table::quantity::RHO_DH;
 use gonio::verify;
@@ -42,13 +42,12 @@ static MODEL: Model = Model {
     integral: Integral::Mapped(Map { samples, most: |_, _| 2 * NODES, mean: None, limit: |_, _| None }),
     value_f32: VALUE_F32,
     lobe: |p, _, _| [0.25 / (PI * (p.mu_i + p.mu_e)), 0.0],
-    reference: Some(&LommelSeeliger),
 };
 
 /// f turns at μe ≈ μi, however small that is: nodes crowd at the horizon, μe = x⁸.
 const NODES: usize = 24;
 
-fn samples(fixed: &Fixed, _: &Setting, _tolerance: f64) -> Vec<Sample> {
+fn samples(fixed: &Fixed, _: &parameters::Setting, _tolerance: f64) -> Vec<Sample> {
     let nodes = gauss_legendre(NODES);
     let sample = |(x, weight): (f64, f64)| {
         let mu = x.powi(8);
@@ -75,6 +74,7 @@ impl Reference for LommelSeeliger {
 
 fn main() -> gonio::Result<()> {
     gonio::shader::register(&MODEL)?;
+    check::register_reference(&MODEL, &LommelSeeliger)?;
     let (evaluator, line) = Evaluator::choose(&DeviceChoice::Auto)?;
     println!("{line}");
 

@@ -20,4 +20,4 @@ fi
 if [ "${1:-}" = --long ]; then exec scripts/drivers.sh "${@:2}"; fi
 
 # The reference integrates adaptively: optimised, or it takes minutes.
-cargo test --release "$@"
+cargo test --release --workspace "$@"

@@ -37,8 +37,8 @@
 //! | `files` | EXR, NPY, PNG, the manifest; sets written all or nothing | physics |
 //!
 //! Three evaluations of each model exist, on purpose. The **shader** and its **twin** (same file name,
-//! same formulas, from angles, in f32 and f64) bake; the **reference** (`reference/`, written from the
-//! papers, from half vectors) judges both and shares nothing with them.
+//! same formulas, from angles, in f32 and f64) bake; the **reference** (the crate `gonio-reference`, written
+//! from the papers, from half vectors) judges both and shares nothing with them.
 //!
 //! A scene bakes **bases**, not colours: a model with unit weights over the roughness that occurs. Its
 //! components A and B are what F0 and F90 multiply, so a material is weights on bases,
@@ -89,11 +89,11 @@ pub mod lab;
 pub mod light;
 pub mod model;
 pub mod plan;
-pub mod reference;
 pub mod scene;
 pub mod shader;
 pub mod table;
 pub mod verify;
 
 pub use base::error::{Error, Result};
+pub use gonio_reference as reference;
 pub use wgpu;

@@ -43,7 +43,7 @@ const FINE: Tolerance = Tolerance::known(1e-6);
 /// The error of `values`, the table of `plan`, as it is sampled bilinearly; `None` for values of f, for
 /// axes that are lists (no reader finds its place in them), and where nothing is to be checked.
 pub(crate) fn measure(plan: &TablePlan, values: &Values, check: Check) -> Result<Option<InterpolationError>> {
-    let known = plan.lobes().iter().all(|lobe| lobe.model().reference.is_some());
+    let known = plan.lobes().iter().all(|lobe| check::reference_of_model(lobe.model()).is_some());
     if check == Check::Sample(0) || !known || !is_sampled(plan) {
         return Ok(None);
     }

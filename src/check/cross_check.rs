@@ -1,15 +1,15 @@
 //! The cross-check: a table's texels against the f64 reference.
 
-use crate::base::angles;
 use crate::base::angles::delta_phi;
 use crate::base::error::Result;
 use crate::base::sequence::stride;
+use crate::check::reference::{Fixed, ReferenceLobe, reference_of_model};
 use crate::model::lobe::Lobe;
 use crate::plan::TablePlan;
-use crate::reference::{Angles, Product};
 use crate::table::axis::{Axis, Variable};
 use crate::table::quantity::Evaluation;
 use crate::table::{ErrorKind, TableError, Values, indices};
+use gonio_reference::Angles;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -74,7 +74,7 @@ pub(crate) struct Comparison<'a> {
 
 impl<'a> Comparison<'a> {
     pub fn new(table: &'a TablePlan, check: Check, estimate: Option<f64>) -> Self {
-        let known = table.lobes().iter().all(|lobe| lobe.model().reference.is_some());
+        let known = table.lobes().iter().all(|lobe| reference_of_model(lobe.model()).is_some());
         let sample = match check {
             _ if !known => Some(Vec::new()),
             Check::All => None,
@@ -188,67 +188,27 @@ pub fn reference(table: &TablePlan, texel: usize) -> Vec<f64> {
     channels
 }
 
-/// ρ_dh of a lobe by the reference at a direction of incidence, before its weights.
-pub(crate) fn reference_albedo(lobe: &Lobe, theta_i: f64, phi_i: f64) -> [f64; 2] {
-    let at = BTreeMap::from([(Variable::ThetaI, theta_i), (Variable::PhiI, phi_i)]);
-    reference_lobe(Evaluation::Directional, lobe, &at)
-}
-
-/// The reference's angles of a pair of directions.
-pub(crate) fn reference_angles(pair: &angles::Angles) -> Angles {
-    let angles::Angles { theta_i, phi_i, theta_e, .. } = *pair;
-    Angles { theta_i, theta_e, delta_phi: pair.delta_phi(), phi_i }
-}
-
-/// f of a lobe by the reference at a pair of directions, before its weights; NaN where it has none.
-pub(crate) fn reference_of(lobe: &Lobe, angles: &angles::Angles) -> [f64; 2] {
-    let Some(reference) = lobe.model().reference else { return [f64::NAN; 2] };
-    let Ok(setting) = lobe.setting_at(None) else { return [f64::NAN; 2] };
-    let f = reference.brdf(&reference_angles(angles), &setting).unwrap_or([f64::NAN; 2]);
-    if lobe.factors().is_empty() {
-        return f;
-    }
-    let factor =
-        Product::new(lobe, None).map(|product| product.at(angles.theta_i.cos(), angles.theta_e.cos()));
-    f.map(|f| f * factor.unwrap_or(f64::NAN))
-}
-
+/// A lobe's part of a texel by the reference, before its weights; NaN where it has none, which no comparison calls right.
 fn reference_lobe(evaluation: Evaluation, lobe: &Lobe, at: &BTreeMap<Variable, f64>) -> [f64; 2] {
-    let Some(reference) = lobe.model().reference else { return [f64::NAN; 2] };
     let get = |variable| at.get(&variable).copied();
-    let Ok(setting) = &lobe.setting_at(get(Variable::Roughness)) else { return [f64::NAN; 2] };
+    let Some(reference) = ReferenceLobe::new(lobe, get(Variable::Roughness)) else { return [f64::NAN; 2] };
     let theta_i = get(Variable::ThetaI).unwrap_or(0.0);
     let phi_i = get(Variable::PhiI).unwrap_or(0.0);
-    let value = || {
-        let delta_phi = match get(Variable::PhiE) {
-            Some(phi_e) => delta_phi(phi_i, phi_e),
-            None => get(Variable::DeltaPhi).unwrap_or(0.0),
-        };
-        let theta_e = get(Variable::ThetaE).unwrap_or(0.0);
-        let f = reference.brdf(&Angles { theta_i, theta_e, delta_phi, phi_i }, setting);
-        (f.unwrap_or([f64::NAN; 2]), theta_e)
-    };
-    if lobe.factors().is_empty() {
-        return match evaluation {
-            Evaluation::Value => value().0,
-            Evaluation::Directional => {
-                reference.rho_dh_at(get(Variable::Mu).unwrap_or(theta_i.cos()), phi_i, setting)
-            }
-            Evaluation::Hemispherical => reference.rho_hh(setting),
-        };
-    }
-    let Some(product) = Product::new(lobe, get(Variable::Roughness)) else { return [f64::NAN; 2] };
     match evaluation {
         Evaluation::Value => {
-            let (f, theta_e) = value();
-            f.map(|f| f * product.at(theta_i.cos(), theta_e.cos()))
+            let delta_phi = match get(Variable::PhiE) {
+                Some(phi_e) => delta_phi(phi_i, phi_e),
+                None => get(Variable::DeltaPhi).unwrap_or(0.0),
+            };
+            let theta_e = get(Variable::ThetaE).unwrap_or(0.0);
+            reference.brdf(&Angles { theta_i, theta_e, delta_phi, phi_i }).unwrap_or([f64::NAN; 2])
         }
         // Of the split sum it is ωe that is fixed.
         Evaluation::Directional => match get(Variable::Mu) {
-            Some(mu) => product.rho_dh(reference, mu, setting, true),
-            None => product.rho_dh(reference, theta_i.cos(), setting, false),
+            Some(mu) => reference.rho_dh(mu, phi_i, Fixed::Exitant),
+            None => reference.rho_dh(theta_i.cos(), phi_i, Fixed::Incident),
         },
-        Evaluation::Hemispherical => product.rho_hh(reference, setting),
+        Evaluation::Hemispherical => reference.rho_hh(),
     }
 }
 

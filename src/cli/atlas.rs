@@ -90,7 +90,7 @@ fn models(args: &Args) -> Result<Vec<&'static Model>> {
     if args.model.is_empty() {
         return Ok(MODELS
             .into_iter()
-            .filter(|model| !model.is_delta() && model.reference.is_some())
+            .filter(|model| !model.is_delta() && crate::check::reference_of_model(model).is_some())
             .collect());
     }
     args.model.iter().map(|name| model::find(name).map_err(|error| error.at("--model"))).collect()

@@ -23,6 +23,7 @@ pub mod harmonics;
 pub mod irradiance;
 #[cfg(feature = "files")]
 mod read;
+mod reference;
 mod sky;
 
 pub use environment::{Clamped, Environment, MAX_TEXELS};

@@ -38,7 +38,6 @@ use crate::model::parameters::{Parameters, Setting};
 use crate::model::{
     Integral, Metal, Model, Parameter, Part, Sampling, SlopeCounts, SlopeMap, Slopes, Term, mirror, part,
 };
-use crate::reference;
 use std::marker::PhantomData;
 use std::sync::LazyLock;
 
@@ -240,7 +239,6 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         },
         value_f32: N::VALUE_F32 + F::VALUE_F32,
         lobe: Self::lobe,
-        reference: Some(if N::STRETCHES { &Self::STRETCHED_REFERENCE } else { &Self::REFERENCE }),
     };
 
     const UNBOUNDED: Option<&'static str> = match M::UNBOUNDED {
@@ -273,12 +271,6 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         M::TERM.part,
         if N::STRETCHES { part!("lobe/anisotropic") } else { part!("lobe/microfacet") },
     ];
-
-    const REFERENCE: reference::Microfacet =
-        reference::Microfacet { ndf: N::REFERENCE, masking: M::REFERENCE, fresnel: F::REFERENCE };
-
-    const STRETCHED_REFERENCE: reference::Anisotropic =
-        reference::Anisotropic { ndf: N::REFERENCE, masking: M::REFERENCE, fresnel: F::REFERENCE };
 
     const SLOPES: Option<Slopes> = match N::MAPS {
         Some([coarse, fine]) if !M::OF_NORMAL => Some(Self::slopes(coarse, fine)),

@@ -7,7 +7,6 @@ use crate::base::precision::VALUE_F32;
 use crate::model::fresnel::Fresnel;
 use crate::model::fresnel::schlick::Schlick;
 use crate::model::{Component, Integral, Microfacet, Model, Part, Term, part};
-use crate::reference;
 use std::marker::PhantomData;
 
 const TERM: Term = Term {
@@ -42,7 +41,6 @@ impl<F: Fresnel> Made<F> {
         value_f32: VALUE_F32 + F::VALUE_F32,
         integral: Integral::Delta(|mu, s| F::fresnel(mu, 1.0 - mu, s)),
         lobe: |p, a, s| F::fresnel(p.mu_i, 1.0 - p.mu_i, s).map(|f| f * p.bin * a.bin),
-        reference: Some(&Self::REFERENCE),
     };
 
     const TERMS: Microfacet = Microfacet {
@@ -59,5 +57,4 @@ impl<F: Fresnel> Made<F> {
         integral_f32: crate::base::precision::INTEGRAL_F32,
     };
     const PARTS: [Part; 2] = [F::TERM.part, TERM.part];
-    const REFERENCE: reference::Mirror = reference::Mirror { fresnel: F::REFERENCE };
 }

@@ -2,7 +2,7 @@
 //!
 //! A part is one WGSL file and one Rust file of the same name: the Rust file is its twin, the same
 //! evaluation in f64, which bakes where there is no device. The *reference* of a part is not here:
-//! `reference/` has it, written from the paper and sharing nothing with this module.
+//! the crate `gonio-reference` has it, written from the paper and sharing nothing with this module.
 
 mod classic;
 pub mod compensation;
@@ -19,6 +19,8 @@ pub(crate) mod panels;
 pub mod parameters;
 mod roughness;
 pub(crate) mod slope_azimuths;
+#[cfg(test)]
+pub(crate) mod truth;
 
 pub use fresnel::metals::{METALS, Metal};
 pub use microfacet::{FRESNELS, MASKINGS, MICROFACETS, MIRRORS, Microfacet};
@@ -30,7 +32,6 @@ use crate::base::precision::INTEGRAL_F32;
 use crate::base::tolerance::{decade, is_fine};
 use crate::model::directions::Map;
 use crate::model::parameters::{Parameters, Setting};
-use crate::reference::Reference;
 use std::sync::{PoisonError, RwLock};
 
 /// A reflection model: f = a·A + b·B with weights that a material gives and components that the
@@ -64,8 +65,6 @@ pub struct Model {
     /// (A, B) in f64, in the shader's own formulas: the evaluation of the CPU path. Of a delta, its
     /// mean over a cell.
     pub lobe: fn(&Pair, &Azimuth, &Setting) -> [f64; 2],
-    /// The independent f64 reference.
-    pub reference: Option<&'static dyn Reference>,
 }
 
 /// A promise of a BRDF that a model, or a format's way to add models up, is known to break: reported as such,

@@ -5,21 +5,20 @@ use crate::bake::{Evaluator, Unobserved};
 use crate::base::error::{Error, Result};
 use crate::base::precision::{INTEGRAL_F32, VALUE_F32};
 use crate::base::timings::Timings;
-use crate::check::Check;
-use crate::check::reference_angles;
+use crate::check::{Check, Fixed, ReferenceLobe, reference_angles};
 use crate::integrate::scale::Scale;
 use crate::model::compensation::{Compensation, Factor};
 use crate::model::lobe::Lobe;
 use crate::model::parameters::Parameters;
 use crate::model::{Integral, Violation};
 use crate::plan::TablePlan;
-use crate::reference;
 use crate::scene::Material;
 use crate::scene::planner::constant_lobes;
 use crate::table::Table;
 use crate::table::axis::{Axis, Variable};
 use crate::table::quantity::RHO_DH;
 use crate::verify::{Angles, Declared, FAINT, Parameter, Subject, Symmetry, Tolerances, albedo};
+use std::cell::OnceCell;
 use std::f64::consts::FRAC_PI_2;
 
 /// A sum of weighted lobes: a material, or a model alone.
@@ -37,6 +36,8 @@ pub struct Sum<'a> {
     points: Option<Points<'a>>,
     /// The lobes of the setting that was evaluated last.
     last: (Vec<f64>, Vec<Lobe>),
+    /// Those by the reference, once they are asked for.
+    last_references: OnceCell<Option<Vec<ReferenceLobe>>>,
 }
 
 /// The lobes at a setting of the parameters.
@@ -138,7 +139,17 @@ impl<'a> Sum<'a> {
             citation: source.into(),
         });
         let declared = declared.collect();
-        Ok(Self { name, evaluator, whole, parameters, lobes, declared, points, last: (setting, first) })
+        Ok(Self {
+            name,
+            evaluator,
+            whole,
+            parameters,
+            lobes,
+            declared,
+            points,
+            last: (setting, first),
+            last_references: OnceCell::new(),
+        })
     }
 
     /// The relative error of values in f32, the largest over the ends of the parameters.
@@ -181,12 +192,8 @@ impl<'a> Sum<'a> {
     fn reference_rho(&self, setting: &[f64], theta_i: f64) -> Option<f64> {
         let mut rho = [0.0; CHANNELS];
         for lobe in &(self.lobes)(setting).ok()? {
-            let (reference, setting, mu) =
-                (lobe.model().reference?, lobe.setting_at(None).ok()?, theta_i.cos().max(0.0));
-            let [a, b] = match &lobe.factors()[..] {
-                [] => reference.rho_dh(mu, &setting),
-                _ => reference::Product::new(lobe, None)?.rho_dh(reference, mu, &setting, false),
-            };
+            let mu = theta_i.cos().max(0.0);
+            let [a, b] = ReferenceLobe::new(lobe, None)?.rho_dh(mu, 0.0, Fixed::Incident);
             for (rho, [weight_a, weight_b]) in rho.iter_mut().zip(lobe.weights()) {
                 *rho += weight_a * a + weight_b * b;
             }
@@ -209,6 +216,15 @@ impl<'a> Sum<'a> {
         let plan = plan.with_lobes(lobes)?.with_tolerance(INTEGRAL_F32)?;
         self.evaluator.bake(&plan, Check::Sample(0), &mut Timings::default(), &Unobserved)
     }
+}
+
+/// Lobes by the reference; `None` where one has none, or a model refuses its parameters: nothing is promised of it.
+fn references_of(lobes: &[Lobe]) -> Option<Vec<ReferenceLobe>> {
+    let reference = |lobe: &Lobe| match lobe.model().refused(&lobe.parameters()) {
+        Some(_) => None,
+        None => ReferenceLobe::new(lobe, None),
+    };
+    lobes.iter().map(reference).collect()
 }
 
 impl Subject for Sum<'_> {
@@ -237,6 +253,7 @@ impl Subject for Sum<'_> {
         let points = points.ok_or_else(|| Error::input(format!("{} is a delta: no values", self.name)))?;
         if self.last.0 != setting {
             self.last = (setting.to_vec(), (self.lobes)(setting)?);
+            self.last_references = OnceCell::new();
         }
         points.set(&self.last.1)?;
         let mut values = Vec::new();
@@ -247,25 +264,17 @@ impl Subject for Sum<'_> {
 
     fn reference(&self, setting: &[f64], angles: &Angles) -> Option<Vec<f64>> {
         let at = reference_angles(angles);
-        let new;
-        let lobes = match self.last.0 == setting {
-            true => &self.last.1,
-            false => {
-                new = (self.lobes)(setting).ok()?;
-                &new
-            }
+        let (new_lobes, new_references);
+        let (lobes, references) = if self.last.0 == setting {
+            (&self.last.1, self.last_references.get_or_init(|| references_of(&self.last.1)).as_ref()?)
+        } else {
+            new_lobes = (self.lobes)(setting).ok()?;
+            new_references = references_of(&new_lobes)?;
+            (&new_lobes, &new_references)
         };
         let mut f = vec![0.0; CHANNELS];
-        for lobe in lobes {
-            if lobe.model().refused(&lobe.parameters()).is_some() {
-                return None; // nothing is promised of it
-            }
-            let ab = lobe.model().reference?.brdf(&at, &lobe.setting_at(None).ok()?)?;
-            let factor = match &lobe.factors()[..] {
-                [] => 1.0,
-                _ => reference::Product::new(lobe, None)?.at(at.theta_i.cos(), at.theta_e.cos()),
-            };
-            let [a, b] = ab.map(|x| x * factor);
+        for (lobe, reference) in lobes.iter().zip(references) {
+            let [a, b] = reference.brdf(&at)?;
             for (f, [weight_a, weight_b]) in f.iter_mut().zip(lobe.weights()) {
                 *f += weight_a * a + weight_b * b;
             }

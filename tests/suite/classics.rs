@@ -169,8 +169,9 @@ fn smooth_ones_are_mirrors() {
             assert!((rho - 1.0).abs() <= 1e-3, "{name}: {rho}");
         }
     }
+    let reference = reference_model("ashikhmin-shirley");
     for mu in mus {
-        let [a, b] = model("ashikhmin-shirley").reference.unwrap().rho_dh(mu, &1e-6.into());
+        let [a, b] = reference.rho_dh(mu, &with_alpha(reference, 1e-6));
         assert!((b - (1.0 - mu).powi(5)).abs() < 1e-3 && (a + b - 1.0).abs() < 1e-3, "{a}, {b}");
     }
 }
@@ -201,7 +202,8 @@ fn ward_has_no_bound_and_says_so() {
         TablePlan::basis("t", &RHO_DH, ward, Some(0.5), vec![axis(ThetaI, 4)]).unwrap_err().to_string();
     assert!(error.contains("beyond any bound") && error.contains("brdf"), "{error}");
     assert!(ward.rho_bound.is_infinite());
-    let rho = |mu: f64, alpha: f64| ward.reference.unwrap().rho_dh(mu, &alpha.into())[0];
+    let reference = reference_model("ward");
+    let rho = |mu: f64, alpha: f64| reference.rho_dh(mu, &with_alpha(reference, alpha))[0];
     let [near, nearer] = [1e-4, 1e-6].map(|mu| rho(mu, 0.5));
     assert!(near > 1.0 && (nearer / near / 10.0 - 1.0).abs() < 0.01, "{near}, {nearer}");
     assert!((rho(0.3, 1e-4) - 0.3).abs() < 1e-6, "{}", rho(0.3, 1e-4));

@@ -10,7 +10,7 @@ use gonio::check::{Check, VALUE_FLOOR};
 use gonio::model::MODELS;
 use gonio::model::lobe::Lobe;
 use gonio::plan::TablePlan;
-use gonio::reference;
+use gonio::reference::Angles as ReferenceAngles;
 use gonio::table::axis::Variable::{DeltaPhi, ThetaE, ThetaI};
 use gonio::table::quantity::BRDF;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -64,7 +64,7 @@ fn are_those_of_a_table() {
         for (evaluator, budget) in evaluators().into_iter().zip([model.value_f32.max(VALUE_F32), STORED_F32])
         {
             let table = bake(evaluator, &plan, Check::Sample(0));
-            let values = evaluate(&mut Points::new(evaluator, &plan.lobes()).unwrap(), &angles);
+            let values = evaluate(&mut Points::new(evaluator, plan.lobes()).unwrap(), &angles);
             assert_eq!(values.len(), table.values.len());
             for (k, &value) in values.iter().enumerate() {
                 let (value, of_table) = (f64::from(value), table.values.get(k));
@@ -145,13 +145,14 @@ fn a_millionth_of_a_radian_from_the_mirror_is_seen() {
             assert!(alpha > 2e-6 || (beside / 0.64 - 1.0).abs() < 0.01, "a millionth is lost: {beside}");
             for (pair, value) in angles.iter().zip(values.chunks_exact(2)) {
                 let delta_phi = exact_delta_phi(pair);
-                let at = reference::Angles {
+                let at = ReferenceAngles {
                     theta_i: pair.theta_i,
                     theta_e: pair.theta_e,
                     delta_phi,
                     phi_i: pair.phi_i,
                 };
-                let truth = reference::GGX.brdf(&at, &alpha.into()).unwrap();
+                let ggx = reference_model("ggx");
+                let truth = ggx.brdf(&at, &with_alpha(ggx, alpha)).unwrap();
                 for (value, truth) in value.iter().zip(truth) {
                     let error = (f64::from(*value) - truth).abs() / truth.max(1e-30);
                     assert!(error <= VALUE_F32, "α = {alpha}, {pair:?}: {value} and {truth}, {error:.2e}");

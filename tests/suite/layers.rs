@@ -154,3 +154,43 @@ fn first_word(text: &str) -> Option<String> {
     // Types, macros and constants at the root of the crate are no rooms.
     (word.starts_with(|c: char| c.is_lowercase()) && word != "wgpu").then_some(word)
 }
+
+/// The reference is a crate that depends on glam and libm and on nothing else; only what compares with it names it.
+#[test]
+fn the_reference_stands_apart() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let manifest = std::fs::read_to_string(root.join("crates/reference/Cargo.toml")).unwrap();
+    let mut tables = Vec::new();
+    let mut dependencies = Vec::new();
+    for line in manifest.lines().map(str::trim) {
+        match line.strip_prefix('[') {
+            Some(table) => tables.push(table.trim_end_matches(']')),
+            None if tables.last() == Some(&"dependencies") => {
+                dependencies.extend(line.split_once('=').map(|(name, _)| name.trim()));
+            }
+            None => {}
+        }
+    }
+    assert_eq!(dependencies, ["glam", "libm"]);
+    let others: Vec<_> = tables.iter().filter(|table| table.contains("dependencies")).collect();
+    assert_eq!(others, [&"dependencies"], "no other kind of dependency");
+    assert!(!root.join("crates/reference/build.rs").exists());
+
+    for room in std::fs::read_dir(root.join("src")).unwrap().map(|entry| entry.unwrap().path()) {
+        let name = room.file_name().unwrap().to_str().unwrap();
+        if !room.is_dir() || ["check", "verify", "lab", "light"].contains(&name) {
+            continue;
+        }
+        for file in files(&room) {
+            let text = std::fs::read_to_string(&file).unwrap();
+            let is_test = file.ends_with("model/truth.rs");
+            assert!(is_test || !text.contains("gonio_reference"), "{} names the reference", file.display());
+        }
+    }
+}
+
+/// All files below a folder.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    entries.flat_map(|path| if path.is_dir() { files(&path) } else { vec![path] }).collect()
+}

@@ -4,7 +4,7 @@
 //! (8) reciprocity, (9) energy, (11) outgoing radiance, (12) radiosity, (13) the ideal mirror. Which number belongs to
 //! which is inferred from their order there.
 
-use crate::common::{device, evaluators, golden, listed, nodes};
+use crate::common::{device, evaluators, golden, listed, model, nodes, reference_model};
 use gonio::bake::{Evaluator, Unobserved};
 use gonio::base::precision::Precision;
 use gonio::base::quadrature::gauss_legendre;
@@ -16,8 +16,9 @@ use gonio::light::exitant::{Integrated, View, prefiltered, radiance, radiosity, 
 use gonio::light::harmonics::{TRUNCATION, coefficients, convolved, evaluate};
 use gonio::light::irradiance::in_closed_form;
 use gonio::light::{Disk, Environment, Frame, Light, Sky, direction, read};
+use gonio::model::compensation::Factor;
 use gonio::model::lobe::Lobe;
-use gonio::reference::light as reference;
+use gonio::reference::{Parameters, Setting, light as reference};
 use gonio::scene::{Scene, parse_recipe};
 use gonio::shader::{Kernel, compose, validate};
 use gonio::table::Table;
@@ -113,7 +114,7 @@ fn a_disk_is_in_closed_form() {
             if theta + sigma < FRAC_PI_2 {
                 close(e, 3.0 * PI * sigma.sin().powi(2) * theta.cos(), 1e-9);
             }
-            let truth = reference::irradiance(&light, towards)[0];
+            let truth = reference::irradiance(&light.to_reference().unwrap(), towards)[0];
             let most = 3.0 * PI * sigma.sin().powi(2);
             // What an arc cosine near its end leaves of a small disk at the horizon.
             assert!((e - truth).abs() < 1e-6 * most, "σ = {sigma}, θ = {theta}: {e}, {truth}");
@@ -126,7 +127,7 @@ fn a_sky_is_in_closed_form() {
     let sky = Sky { zenith: [2.0, 1.0, 0.5], horizon: [0.5, 3.0, 0.5], ground: [0.1, 0.2, 0.7] };
     for normal in normals() {
         let e = in_closed_form(&Light::Sky(sky), normal).unwrap();
-        close3(e, reference::irradiance(&Light::Sky(sky), normal), 1e-9);
+        close3(e, reference::irradiance(&Light::Sky(sky).to_reference().unwrap(), normal), 1e-9);
     }
     close(in_closed_form(&Light::Sky(sky), [0.0, 0.0, 1.0]).unwrap()[0], PI * 0.5 + TAU * 1.5 / 3.0, 1e-14);
 }
@@ -169,9 +170,13 @@ fn a_sun_and_a_sky_keep_their_energy() {
 #[test]
 fn the_comparison_can_fail() {
     let map = sun_and_sky(128, 64);
-    let right = reference::Meridians::new(&map).irradiance(direction(1.0, 1.0));
-    let turned = map.clone().rotated(1e-2);
-    let wrong = reference::Meridians::new(&turned).irradiance(direction(1.0, 1.0));
+    let irradiance = |map: &Environment| {
+        let light = Light::Map(map.clone());
+        reference::irradiance(&light.to_reference().unwrap(), reference::Frame::new(1.0, 1.0).normal())
+    };
+    let right = irradiance(&map);
+    let turned = map.rotated(1e-2);
+    let wrong = irradiance(&turned);
     assert!((right[0] - wrong[0]).abs() > 1e-4 * right[0]);
     let light = Light::Map(turned);
     let axes = [listed(Variable::ThetaN, &[1.0]), listed(Variable::PhiN, &[1.0])];
@@ -260,7 +265,7 @@ fn lambert_sends_back_its_share_of_the_irradiance() {
     let light = Light::Map(sun_and_sky(64, 32));
     let frame = Frame::new(0.5, 1.0);
     let view = View { frame, theta_e: 0.8, phi_e: 2.0 };
-    let e = reference::irradiance(&light, frame.normal());
+    let e = reference::irradiance(&light.to_reference().unwrap(), frame.normal());
     for evaluator in evaluators() {
         let lit =
             le(evaluator, &lobes("model = \"lambert\", albedo = [0.8, 0.4, 0.1]"), &light, &[view], 1e-5);
@@ -381,6 +386,20 @@ fn equation_11_outgoing_radiance() {
     }
 }
 
+/// A coat without roughness is a mirror that a factor dims: Le = w (0.04 + 0.96 (1 − μe)⁵) L(r).
+#[test]
+fn a_smooth_coat_reflects_its_fresnel_term() {
+    let lobe = Lobe::new(model("ggx-smith-correlated-none"), Some(0.0), vec![[1.0, 0.0]; 3]).unwrap();
+    let coat = lobe.with_factors(vec![Factor::Coat { weight: 0.5 }]);
+    let light = Light::Constant([2.0; 3]);
+    for theta_e in [0.0f64, 0.8, 1.4] {
+        let view = View { frame: Frame::new(0.5, 1.0), theta_e, phi_e: 0.3 };
+        let reflected = 0.5 * (0.04 + 0.96 * (1.0 - theta_e.cos()).powi(5));
+        let lit = le(device(), &[coat.clone()], &light, &[view], 1e-4);
+        close3(lit[0].value, [2.0 * reflected; 3], 1e-9);
+    }
+}
+
 /// (12): M = ∫ Le cos θe dωe, by Gauss–Legendre over ωe of Le under a sky; and M = ρ_hh E where the sky is uniform.
 #[test]
 fn equation_12_radiosity() {
@@ -401,7 +420,9 @@ fn equation_12_radiosity() {
     let m = radiosity(device(), (&one, "m"), &uniform, &[frame], 1e-4, &Unobserved).unwrap()[0].value[0];
     let e = in_closed_form(&uniform, [0.0, 0.0, 1.0]).unwrap()[0];
     let ggx = &lobes[0];
-    let [a, b] = ggx.model().reference.unwrap().rho_hh(&ggx.setting_at(None).unwrap());
+    let reference = reference_model(ggx.model().name);
+    let setting = Setting::new(reference.measure(), ggx.roughness(), &Parameters::DEFAULT).unwrap();
+    let [a, b] = reference.rho_hh(&setting);
     close(m / e, ggx.weights()[0][0] * a + ggx.weights()[0][1] * b, 1e-6);
 }
 

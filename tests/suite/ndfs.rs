@@ -3,8 +3,7 @@
 use crate::common::*;
 use gonio::base::precision::INTEGRAL_F32;
 use gonio::check::Check;
-use gonio::model::parameters::Setting;
-use gonio::reference::{Angles, MIN_MU};
+use gonio::reference::{Angles, MIN_MU, Parameters, Reference, Setting};
 use gonio::table::axis::Variable::{DeltaPhi, Mu, ThetaE, ThetaI};
 use gonio::table::quantity::{BRDF, RHO_DH, RHO_HH, SPLIT_SUM};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -13,10 +12,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 const NEW: [(&str, f64); 6] =
     [("gtr", 1.0), ("gtr", 1.5), ("gtr", 4.0), ("gtr", 10.0), ("blinn-phong", 0.0), ("charlie", 0.0)];
 
-fn with_gamma(alpha: f64, gamma: f64) -> Setting {
-    let mut setting = Setting::from(alpha);
-    setting.parameters[0] = gamma;
-    setting
+fn with_gamma(model: &dyn Reference, alpha: f64, gamma: f64) -> Setting {
+    Setting::measured(model.measure(), alpha, &Parameters::named([("gamma", gamma)]).unwrap()).unwrap()
 }
 
 fn directions() -> Vec<Angles> {
@@ -37,11 +34,11 @@ fn assert_near(a: f64, b: f64, relative: f64, what: &dyn std::fmt::Debug) {
 /// γ = 2 is GGX, α = 1 the same for every γ, and γ → 1 goes over into Disney's logarithm.
 #[test]
 fn gtr_has_the_limits_of_its_exponent() {
-    let [gtr, ggx] = ["gtr", "ggx"].map(|name| model(name).reference.unwrap());
+    let [gtr, ggx] = ["gtr", "ggx"].map(reference_model);
     for angles in directions() {
-        let value = |alpha: f64, gamma: f64| gtr.brdf(&angles, &with_gamma(alpha, gamma)).unwrap()[0];
-        for alpha in [1e-6, 1e-3, 0.1, 0.7, 1.0] {
-            let exact = ggx.brdf(&angles, &alpha.into()).unwrap()[0];
+        let value = |alpha: f64, gamma: f64| gtr.brdf(&angles, &with_gamma(gtr, alpha, gamma)).unwrap()[0];
+        for alpha in [1e-3, 0.1, 0.7, 1.0] {
+            let exact = ggx.brdf(&angles, &with_alpha(ggx, alpha)).unwrap()[0];
             assert_near(value(alpha, 2.0), exact, 1e-11, &(angles, alpha));
             assert_near(value(alpha, 1.0 + 1e-9), value(alpha, 1.0), 1e-6, &(angles, alpha));
         }
@@ -111,11 +108,12 @@ fn integrals_meet_every_tolerance_for_every_gamma() {
 /// As α → 0, Blinn–Phong is Beckmann: cos^p θm = e^(−p θm²/2) but for O(α² x²), x = tan²θm/α².
 #[test]
 fn blinn_phong_becomes_beckmann() {
-    let [blinn, beckmann] = ["blinn-phong", "beckmann"].map(|name| model(name).reference.unwrap());
+    let [blinn, beckmann] = ["blinn-phong", "beckmann"].map(reference_model);
     for alpha in [1e-3, 1e-4] {
         for (theta_i, off) in [(0.0, 0.0), (0.3, 0.5), (1.2, 1.0), (0.8, 3.0)] {
             let angles = Angles { theta_i, theta_e: theta_i + off * alpha, delta_phi: 0.0, phi_i: 0.0 };
-            let [a, b] = [blinn, beckmann].map(|of| of.brdf(&angles, &alpha.into()).unwrap()[0]);
+            let [a, b] =
+                [blinn, beckmann].map(|model| model.brdf(&angles, &with_alpha(model, alpha)).unwrap()[0]);
             assert_near(a, b, 10.0 * alpha * alpha, &(angles, alpha));
         }
     }
@@ -125,6 +123,7 @@ fn blinn_phong_becomes_beckmann() {
 #[test]
 fn normals_are_normalised() {
     for (name, gamma) in NEW {
+        let reference = reference_model(name);
         for alpha in [0.01, 0.1, 0.5, 1.0] {
             let (step, mut sum) = (1e-2, 0.0);
             for k in -2500..2500 {
@@ -135,7 +134,7 @@ fn normals_are_normalised() {
                 if theta.cos() <= 2.0 * MIN_MU {
                     break;
                 }
-                let d = model(name).reference.unwrap().factors(&angles, &with_gamma(alpha, gamma)).unwrap().d;
+                let d = reference.factors(&angles, &with_gamma(reference, alpha, gamma)).unwrap().d;
                 sum += 2.0 * PI * step * d * tan * tan / (1.0 + tan * tan).powi(2);
             }
             // What is beyond 2⁻²³ is nothing; the trapezoid of a bell converges beyond f64.
@@ -148,9 +147,9 @@ fn normals_are_normalised() {
 #[test]
 fn charlie_is_no_mirror_at_alpha_0() {
     let charlie = model("charlie");
-    let reference = charlie.reference.unwrap();
+    let reference = reference_model("charlie");
     for angles in directions() {
-        let at = |alpha: f64| reference.brdf(&angles, &alpha.into()).unwrap();
+        let at = |alpha: f64| reference.brdf(&angles, &with_alpha(reference, alpha)).unwrap();
         assert_eq!(at(0.0), at(0.005));
         assert!(at(0.005)[0].is_finite());
     }
@@ -169,7 +168,8 @@ fn charlie_is_no_mirror_at_alpha_0() {
 #[test]
 fn energy_is_broken_as_declared() {
     let rho = |name: &str, alpha: f64, gamma: f64| {
-        let [a, b] = model(name).reference.unwrap().rho_dh(MIN_MU, &with_gamma(alpha, gamma));
+        let reference = reference_model(name);
+        let [a, b] = reference.rho_dh(MIN_MU, &with_gamma(reference, alpha, gamma));
         a + b
     };
     let gtr = rho("gtr", 1e-3, 1.0);

@@ -239,7 +239,8 @@ fn what_is_unbounded_has_no_integrals_and_says_why() {
     let error = TablePlan::basis("t", &RHO_DH, model, Some(0.5), axes()).unwrap_err().to_string();
     assert!(error.contains("beyond any bound") && error.contains("brdf"), "{error}");
     // It really breaks it.
-    assert!(model.reference.unwrap().rho_dh(0.01, &0.25.into())[0] > 1.0 && model.rho_bound.is_infinite());
+    let reference = reference_model(model.name);
+    assert!(reference.rho_dh(0.01, &with_alpha(reference, 0.25))[0] > 1.0 && model.rho_bound.is_infinite());
 }
 
 /// Names that are none are refused with those that are.

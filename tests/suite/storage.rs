@@ -2,13 +2,12 @@
 //! what a reader meets, and the optimiser's table is smaller and better than the usual one.
 
 use crate::common::readers;
-use crate::common::{device, listed, model};
+use crate::common::{device, listed, model, reference_model, with_alpha};
 use gonio::bake::{Evaluator, Unobserved, within_tolerance};
 use gonio::base::timings::Timings;
 use gonio::check::Check;
 use gonio::io::{Format, Provenance, TableEntry, TableSet};
 use gonio::plan::TablePlan;
-use gonio::reference;
 use gonio::scene;
 use gonio::scene::planner::{Plan, Selection};
 use gonio::table::Table;
@@ -130,6 +129,7 @@ fn the_stated_maximum_bounds_what_a_reader_meets() {
         (sqrt_nodes(Variable::Mu, 24), sqrt_nodes(Variable::Roughness, 16)),
         (Axis::natural(Variable::Mu, 32).unwrap(), Axis::natural(Variable::Roughness, 32).unwrap()),
     ];
+    let ggx = reference_model("ggx");
     for (mu, roughness) in axes {
         let sqrt = mu.mapping() == Mapping::Sqrt;
         let plan = dfg(mu, roughness);
@@ -154,7 +154,7 @@ fn the_stated_maximum_bounds_what_a_reader_meets() {
         {
             let (mu, r) = (1.0 / 256.0 + (1.0 - 1.0 / 256.0) * u.powi(3), 0.05 + 0.95 * v * v);
             let ((x, fx), (y, fy)) = (place(mu, columns), place(r, rows));
-            let truth = reference::Reference::rho_dh(reference::GGX, mu, &(r * r).into());
+            let truth = ggx.rho_dh(mu, &with_alpha(ggx, r * r));
             for (c, truth) in truth.into_iter().enumerate() {
                 let at = |y: usize, x: usize| table.value(y * columns + x, c);
                 let low = at(y, x) * (1.0 - fx) + at(y, x + 1) * fx;

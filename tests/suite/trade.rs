@@ -90,7 +90,8 @@ fn means_and_mirrors_are_sampled_too() {
             let table = bake(evaluator, &plan.clone().with_rule(rule).unwrap(), gonio::check::Check::All);
             // 5 · ½ N^−½ as above for one direction; the mean of 40 is better.
             assert!(table.error.measured_max.unwrap() < 0.055, "{rule}: {:?}", table.error);
-            let mirror = gonio::reference::Reference::rho_hh(gonio::reference::GGX, &0.0.into());
+            let ggx = reference_model("ggx");
+            let mirror = ggx.rho_hh(&with_alpha(ggx, 0.0));
             assert!((table.values.get(0) - mirror[0]).abs() < 1e-6, "{rule}: {:?}", table.values);
         }
     }

@@ -6,8 +6,7 @@ use crate::base::angles::Angles;
 use crate::base::error::{Error, Result};
 use crate::base::half_angle::MU_MIN;
 use crate::check;
-use crate::check::VALUE_FLOOR;
-use crate::check::reference_angles;
+use crate::check::{ReferenceLobe, VALUE_FLOOR, reference_angles};
 use crate::cli::eval::{Args, is_sane, subject};
 use crate::cli::{HEADING, print, print_json};
 use crate::model::lobe::Lobe;
@@ -82,7 +81,7 @@ fn relative_difference(value: &[f32], reference: &[f64]) -> f64 {
 }
 
 fn factors(lobe: &Lobe, angles: &Angles) -> Option<Factors> {
-    let factors = lobe.model().reference?.factors(&reference_angles(angles), &lobe.setting_at(None).ok()?)?;
+    let factors = ReferenceLobe::new(lobe, None)?.factors(&reference_angles(angles))?;
     let f = |&[a, b]: &[f64; 2]| a * factors.f[0] + b * factors.f[1];
     let f = lobe.weights().iter().map(f).collect();
     Some(Factors { model: lobe.model().name, d: factors.d, g2: factors.g2, f })

@@ -35,11 +35,11 @@ use crate::bake::{Evaluator, Observer};
 use crate::base::angles::Angles;
 use crate::base::error::{Error, Result};
 use crate::base::precision::VALUE_F32;
-use crate::check::reference_angles;
+use crate::check::{reference_angles, reference_of_model, reference_parameters};
 use crate::model::Model;
 use crate::model::lobe::Lobe;
-use crate::model::parameters::Setting;
 use band::{Subject, Tally, measure};
+use gonio_reference::Setting;
 use serde::Serialize;
 
 /// Where decades of α begin, and the end of the last.
@@ -127,13 +127,14 @@ pub fn measure_model(
             model.name
         )));
     }
-    let reference = model.reference.ok_or_else(|| {
+    let reference = reference_of_model(model).ok_or_else(|| {
         Error::input(format!("{} has no f64 reference, so that nothing is known of its error", model.name))
     })?;
     let unit = [[1.0, 0.0], [0.0, 1.0]];
     let channels = model.components.len();
     let lobe = Lobe::new(model, model.shape.map(|_| 1.0), unit[..channels].to_vec())?;
-    let parameters = lobe.parameters();
+    let parameters = reference_parameters(model, &lobe.parameters())
+        .map_err(|why| Error::input(format!("{}: {why}", model.name)))?;
     let mut points = Points::new(evaluator, &[lobe])?;
     let name = |channel: usize, alpha: f64| {
         // The component alone, in the words of gonio eval.
@@ -148,7 +149,9 @@ pub fn measure_model(
         channels,
         evaluate: &mut |alphas, angles, values| points.sweep(alphas, angles, values),
         reference: &|angles: &Angles, alpha| {
-            reference.brdf(&reference_angles(angles), &Setting { alpha, parameters }).unwrap_or([f64::NAN; 2])
+            let setting = Setting::measured(reference.measure(), alpha, &parameters).ok();
+            let f = setting.and_then(|setting| reference.brdf(&reference_angles(angles), &setting));
+            f.unwrap_or([f64::NAN; 2])
         },
         name: &name,
         faint: model.faint().unwrap_or(0.0),

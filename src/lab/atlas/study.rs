@@ -10,14 +10,14 @@ use crate::bake::points::Points;
 use crate::bake::{Evaluator, Observer};
 use crate::base::angles::Angles;
 use crate::base::error::{Error, Result};
-use crate::check::reference_angles;
+use crate::check::{reference_angles, reference_of_model};
 use crate::lab::atlas::band::{Subject, measure};
 use crate::lab::atlas::{DECADES, Page, alphas, directions, page};
 use crate::model;
 use crate::model::lobe::Lobe;
-use crate::reference::GGX;
 use crate::verify::user_shader::{UserFunction, UserShader};
 use crate::verify::{Parameter, Subject as _, Symmetry};
+use gonio_reference::{Parameters, Setting};
 use std::f64::consts::PI;
 
 /// The row of directions that are rounded to f32, and nothing else.
@@ -104,6 +104,8 @@ fn form(
     observer: &dyn Observer,
 ) -> Result<Page> {
     let alphas = alphas();
+    let ggx = reference_of_model(model::find("ggx")?)
+        .ok_or_else(|| Error::Internal("ggx has no reference".into()))?;
     let per_alpha = (budget as usize / alphas.len()).max(1);
     let mut subject = Subject {
         channels: 1,
@@ -112,7 +114,9 @@ fn form(
             evaluate(alphas[0], angles, values)
         },
         reference: &|angles, alpha| {
-            GGX.brdf(&reference_angles(angles), &alpha.into()).map_or([f64::NAN; 2], |[a, b]| [a + b, 0.0])
+            let setting = Setting::measured(ggx.measure(), alpha, &Parameters::DEFAULT).ok();
+            let f = setting.and_then(|setting| ggx.brdf(&reference_angles(angles), &setting));
+            f.map_or([f64::NAN; 2], |[a, b]| [a + b, 0.0])
         },
         name: &|_, alpha| format!("--model ggx --set alpha={alpha:?} --set f0=1 --set f90=1"),
         faint: 0.0,

@@ -58,7 +58,7 @@ pub fn costs(
     observer: &dyn Observer,
 ) -> Result<Vec<Cost>> {
     let mut costs = Vec::new();
-    if matches!(model.integral, Integral::Unbounded(_)) || model.reference.is_none() {
+    if matches!(model.integral, Integral::Unbounded(_)) || check::reference_of_model(model).is_none() {
         return Ok(costs);
     }
     for quantity in [&RHO_DH, &RHO_HH] {

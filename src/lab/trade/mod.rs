@@ -230,7 +230,7 @@ impl Truth {
         all: bool,
         tick: &(impl Fn(f64) -> Result<()> + Sync),
     ) -> Result<Self> {
-        if table.lobes().iter().any(|lobe| lobe.model().reference.is_none()) {
+        if table.lobes().iter().any(|lobe| check::reference_of_model(lobe.model()).is_none()) {
             return Err(Error::input(format!(
                 "table \"{}\": a lobe has no reference to compare with",
                 table.name()

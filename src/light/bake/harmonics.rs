@@ -8,9 +8,9 @@ use crate::light::Light;
 use crate::light::bake::{IRRADIANCE, Order, Values, normals, timed};
 use crate::light::harmonics;
 use crate::light::harmonics::{Coefficients, Factors, TRUNCATION};
-use crate::reference::light as reference;
 use crate::table::Table;
 use crate::table::axis::{Axis, Variable};
+use gonio_reference::light as reference;
 
 /// Roundings of a term on the device, one after the other: of its two factors and products, and of sums of 16 terms and of
 /// 16 such sums.
@@ -69,7 +69,7 @@ impl Order<'_> {
             }
             let truth = match self.check {
                 Check::Sample(0) => radiance,
-                _ => reference::harmonics(self.light),
+                _ => reference::harmonics(&self.light.to_reference()?),
             };
             let tables = [
                 table("sh", IRRADIANCE, &radiance, &truth)?,

@@ -2,12 +2,14 @@
 
 use crate::base::error::Result;
 use crate::base::timings::Timings;
-use crate::light::bake::{FLOOR, IRRADIANCE, Order, Truths, Values, largest, normals, timed};
+use crate::light::bake::{
+    FLOOR, IRRADIANCE, Order, Truths, Values, largest, normals, reference_frames, timed,
+};
 use crate::light::irradiance::{Prepared, in_closed_form};
 use crate::light::{Environment, Light};
-use crate::reference::light as reference;
 use crate::table::Table;
 use crate::table::axis::Axis;
+use gonio_reference::light as reference;
 use std::time::Instant;
 
 /// Pieces of a column that the horizon crosses, at most.
@@ -27,20 +29,22 @@ impl Order<'_> {
         })?;
         self.observer.begin("checking irradiance");
         timed(&mut stages.check, || {
-            let truths = self.irradiance_truths(&axes, &normals)?;
+            let truths = self.irradiance_truths(&axes)?;
             self.light_table(["irradiance", IRRADIANCE, self.name], &axes, values, &truths)
         })
     }
 
     /// E of some texels by the reference.
-    pub(super) fn irradiance_truths(&self, axes: &[Axis], normals: &[[f64; 3]]) -> Result<Truths> {
-        let meridians = match self.light {
-            Light::Map(map) => Some(reference::Meridians::new(map)),
+    pub(super) fn irradiance_truths(&self, axes: &[Axis; 2]) -> Result<Truths> {
+        let light = self.light.to_reference()?;
+        let meridians = match light {
+            reference::Light::Map(map) => Some(reference::Meridians::new(map)),
             _ => None,
         };
+        let frames = reference_frames(&axes[0], &axes[1]);
         self.truths(axes, &[], &|texel| match &meridians {
-            Some(meridians) => meridians.irradiance(normals[texel]),
-            None => reference::irradiance(self.light, normals[texel]),
+            Some(meridians) => meridians.irradiance(frames[texel].normal()),
+            None => reference::irradiance(&light, frames[texel].normal()),
         })
     }
 

@@ -7,7 +7,7 @@ mod radiosity;
 
 use crate::bake::{Evaluator, Observer};
 use crate::base::error::{Error, Result};
-use crate::check::{Check, Tally, sample};
+use crate::check::{Check, Tally, reference_of_model, sample};
 use crate::light::exitant::Integrated;
 use crate::light::{Frame, Light};
 use crate::model::lobe::Lobe;
@@ -73,7 +73,7 @@ impl Order<'_> {
     ) -> Result<Truths> {
         let shape: Vec<_> = axes.iter().map(Axis::len).collect();
         let texels = match self.check {
-            _ if lobes.iter().any(|lobe| lobe.model().reference.is_none()) => Vec::new(),
+            _ if lobes.iter().any(|lobe| reference_of_model(lobe.model()).is_none()) => Vec::new(),
             Check::All => (0..shape.iter().product()).collect(),
             Check::Sample(n) => sample(&shape, n),
         };
@@ -184,6 +184,13 @@ fn normals(axes: &[Axis; 2]) -> Vec<[f64; 3]> {
 
 fn frames(theta: &Axis, phi: &Axis) -> Vec<Frame> {
     let row = |&theta: &f64| phi.values().iter().map(move |&phi| Frame::new(theta, phi));
+    theta.values().iter().flat_map(row).collect()
+}
+
+/// The reference's own frames of the same normals, in the same order.
+fn reference_frames(theta: &Axis, phi: &Axis) -> Vec<gonio_reference::light::Frame> {
+    let row =
+        |&theta: &f64| phi.values().iter().map(move |&phi| gonio_reference::light::Frame::new(theta, phi));
     theta.values().iter().flat_map(row).collect()
 }
 

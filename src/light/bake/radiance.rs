@@ -1,17 +1,19 @@
 //! Exitant radiance over roughness, normals and directions, and what the split sum makes of it.
 
-use crate::base::angles::Angles;
+use crate::base::angles::delta_phi;
 use crate::base::error::Result;
 use crate::base::timings::Timings;
-use crate::check::reference_of;
-use crate::light::bake::{MARGIN, Order, RADIANCE, Values, estimate, frames, lobes_of, timed};
+use crate::check::{Fixed, ReferenceLobe};
+use crate::light::bake::{
+    MARGIN, Order, RADIANCE, Values, estimate, frames, lobes_of, reference_frames, timed,
+};
 use crate::light::exitant;
 use crate::light::exitant::View;
 use crate::model::lobe::Lobe;
-use crate::reference::light as reference;
 use crate::scene::Material;
 use crate::table::Table;
 use crate::table::axis::{Axis, Variable};
+use gonio_reference::{Angles, light as reference};
 
 impl Order<'_> {
     /// Le of a material over roughness (where `roughness` says one or more), normals and ωe, and beside it LD(r) (F0·A +
@@ -57,6 +59,7 @@ impl Order<'_> {
         let swept = (!roughness.is_empty())
             .then(|| Axis::listed(Variable::Roughness, roughness.to_vec()))
             .transpose()?;
+        let angles_axes = axes.clone();
         let axes: Vec<_> = swept.into_iter().chain(axes).collect();
         let precision = self.precision();
         let exact = Values {
@@ -75,10 +78,16 @@ impl Order<'_> {
         };
         observer.begin("checking radiance");
         timed(&mut stages.check, || {
-            let of = |texel: usize| (&lobes[texel / views.len()], &views[texel % views.len()]);
+            let light = self.light.to_reference()?;
+            let frames = reference_frames(&angles_axes[0], &angles_axes[1]);
+            let directions = views.len() / frames.len();
+            let references: Vec<_> = lobes.iter().map(|lobes| References::new(lobes)).collect();
             let truths = self.truths(&axes, &lobes.concat(), &|texel| {
-                let (lobes, view) = of(texel);
-                self.le_by_the_reference(lobes, view)
+                let View { theta_e, phi_e, frame } = views[texel % views.len()];
+                let seen = self.light.radiance(View { theta_e, phi_e, frame }.mirror());
+                let frame = &frames[texel % views.len() / directions];
+                let Some(references) = &references[texel / views.len()] else { return [f64::NAN; 3] };
+                references.le(&light, frame, [theta_e, phi_e], seen)
             })?;
             let exact = self.light_table(["radiance", RADIANCE, &subject], &axes, exact, &truths)?;
             // It is held to the exact one, all of it.
@@ -90,35 +99,62 @@ impl Order<'_> {
             Ok([exact, split])
         })
     }
+}
 
-    /// Le by the reference: of a delta F L(r), of all else its definition.
-    fn le_by_the_reference(&self, lobes: &[Lobe], view: &View) -> [f64; 3] {
-        let (deltas, values): (Vec<_>, Vec<_>) = lobes.iter().partition(|lobe| is_delta(lobe));
-        let (theta_e, phi_e) = (view.theta_e, view.phi_e);
-        let f = |(theta_i, phi_i): reference::Incident| {
-            let angles = Angles { theta_i, phi_i, theta_e, phi_e };
-            weighed(&values, |lobe| reference_of(lobe, &angles))
-        };
-        let width = values.iter().filter_map(|lobe| Some(lobe.model().shape?.measure(lobe.roughness()?)));
-        let width = width.fold(1.0, f64::min);
+/// The lobes of a material by the reference.
+struct References<'a> {
+    /// Those that are deltas, and those that have values.
+    deltas: Vec<(&'a Lobe, ReferenceLobe)>,
+    values: Vec<(&'a Lobe, ReferenceLobe)>,
+    /// Their least width.
+    width: f64,
+}
+
+impl<'a> References<'a> {
+    /// `None` where one has no reference.
+    fn new(lobes: &'a [Lobe]) -> Option<Self> {
+        let all: Vec<_> =
+            lobes.iter().map(|lobe| Some((lobe, ReferenceLobe::new(lobe, None)?))).collect::<Option<_>>()?;
+        let (deltas, values): (Vec<_>, Vec<_>) = all.into_iter().partition(|(lobe, _)| is_delta(lobe));
+        let width = values.iter().filter_map(|(_, lobe)| lobe.width()).fold(1.0, f64::min);
+        Some(Self { deltas, values, width })
+    }
+
+    /// Le: of a delta F L(r), of all else its definition. `seen` is L(r) as the light says it, which the reference
+    /// allows where r is on a border between radiances.
+    fn le(
+        &self,
+        light: &reference::Light,
+        frame: &reference::Frame,
+        exit: [f64; 2],
+        seen: [f64; 3],
+    ) -> [f64; 3] {
+        let [theta_e, phi_e] = exit;
         let mut sum = [0.0; 3];
-        if !values.is_empty() {
-            sum = reference::exitant(self.light, &view.frame, (theta_e, phi_e), width, &f);
+        if !self.values.is_empty() {
+            let f = |(theta_i, phi_i): reference::Incident| {
+                let angles = Angles { theta_i, phi_i, theta_e, delta_phi: delta_phi(phi_i, phi_e) };
+                weighed(&self.values, |lobe| lobe.brdf(&angles).unwrap_or([f64::NAN; 2]))
+            };
+            sum = reference::exitant(light, frame, (theta_e, phi_e), self.width, &f);
         }
-        let mirrored = weighed(&deltas, |lobe| match (lobe.model().reference, lobe.setting_at(None)) {
-            (Some(reference), Ok(setting)) => reference.rho_dh(theta_e.cos(), &setting),
-            _ => [f64::NAN; 2],
-        });
-        let seen = self.light.radiance(view.mirror());
-        (0..3).for_each(|c| sum[c] += seen[c] * mirrored[c]);
+        if !self.deltas.is_empty() {
+            let radiances = light.radiances(frame.mirror(theta_e, phi_e));
+            let here = if radiances.contains(&seen) { Some(seen) } else { radiances.first().copied() };
+            let mirrored = weighed(&self.deltas, |lobe| lobe.rho_dh(theta_e.cos(), 0.0, Fixed::Exitant));
+            (0..3).for_each(|c| sum[c] += here.map_or(f64::NAN, |radiance| radiance[c]) * mirrored[c]);
+        }
         sum
     }
 }
 
 /// Σ of a quantity's A and B times what a lobe weighs them with, R, G and B.
-pub(super) fn weighed(lobes: &[&Lobe], of: impl Fn(&Lobe) -> [f64; 2]) -> [f64; 3] {
-    lobes.iter().fold([0.0; 3], |sum, lobe| {
-        let [a, b] = of(lobe);
+pub(super) fn weighed(
+    lobes: &[(&Lobe, ReferenceLobe)],
+    components: impl Fn(&ReferenceLobe) -> [f64; 2],
+) -> [f64; 3] {
+    lobes.iter().fold([0.0; 3], |sum, (lobe, reference)| {
+        let [a, b] = components(reference);
         std::array::from_fn(|c| sum[c] + lobe.weights()[c][0] * a + lobe.weights()[c][1] * b)
     })
 }

@@ -2,15 +2,17 @@
 
 use crate::base::error::Result;
 use crate::base::timings::Timings;
-use crate::check::{Check, reference_albedo};
+use crate::check::{Check, Fixed, ReferenceLobe};
 use crate::light::bake::radiance::weighed;
-use crate::light::bake::{IRRADIANCE, MARGIN, Order, Truths, Values, estimate, frames, lobes_of, timed};
-use crate::light::{Frame, exitant};
+use crate::light::bake::{
+    IRRADIANCE, MARGIN, Order, Truths, Values, estimate, frames, lobes_of, reference_frames, timed,
+};
+use crate::light::exitant;
 use crate::model::lobe::Lobe;
-use crate::reference::light as reference;
 use crate::scene::Scene;
 use crate::table::Table;
 use crate::table::axis::Axis;
+use gonio_reference::light as reference;
 
 impl Order<'_> {
     /// M of a material over normals, and M/E. `axes` are θn and φn.
@@ -53,9 +55,8 @@ impl Order<'_> {
         let radiosity = values(found.iter().map(|one| one.value).collect(), Some(estimate(&found)));
         self.observer.begin(&format!("checking {material} radiosity"));
         timed(&mut stages.check, || {
-            let m = self.radiosity_truths(&axes, &lobes, &frames)?;
-            let normals: Vec<_> = frames.iter().map(Frame::normal).collect();
-            let e = if m.is_empty() { Vec::new() } else { self.irradiance_truths(&axes, &normals)? };
+            let m = self.radiosity_truths(&axes, &lobes)?;
+            let e = if m.is_empty() { Vec::new() } else { self.irradiance_truths(&axes)? };
             let shares: Vec<_> =
                 m.iter().zip(&e).map(|(&(texel, m), &(_, e))| (texel, share(m, e))).collect();
             Ok([
@@ -66,14 +67,16 @@ impl Order<'_> {
     }
 
     /// M of some texels by the reference.
-    fn radiosity_truths(&self, axes: &[Axis], lobes: &[Lobe], frames: &[Frame]) -> Result<Truths> {
-        let known = lobes.iter().all(|lobe| lobe.model().reference.is_some());
-        if !known || self.check == Check::Sample(0) {
+    fn radiosity_truths(&self, axes: &[Axis; 2], lobes: &[Lobe]) -> Result<Truths> {
+        let references: Option<Vec<_>> =
+            lobes.iter().map(|lobe| Some((lobe, ReferenceLobe::new(lobe, None)?))).collect();
+        let Some(references) = references.filter(|_| self.check != Check::Sample(0)) else {
             return Ok(Vec::new());
-        }
-        let all: Vec<_> = lobes.iter().collect();
-        let albedo =
-            reference::Albedo::new(&|theta_i| weighed(&all, |lobe| reference_albedo(lobe, theta_i, 0.0)));
-        self.truths(axes, lobes, &|texel| reference::radiosity(self.light, &frames[texel], &albedo))
+        };
+        let albedo = reference::Albedo::new(&|theta_i: f64| {
+            weighed(&references, |lobe| lobe.rho_dh(theta_i.cos(), 0.0, Fixed::Incident))
+        });
+        let (light, frames) = (self.light.to_reference()?, reference_frames(&axes[0], &axes[1]));
+        self.truths(axes, lobes, &|texel| reference::radiosity(&light, &frames[texel], &albedo))
     }
 }

@@ -17,6 +17,7 @@ use crate::bake::points::Points;
 use crate::bake::{Evaluator, Observer};
 use crate::base::angles::Angles;
 use crate::base::error::{Error, Result};
+use crate::integrate::scale::Scale;
 use crate::light::irradiance;
 use crate::light::{Frame, Light, direction};
 use crate::model::Integral;
@@ -101,14 +102,19 @@ pub fn radiance(
     Ok(all)
 }
 
-/// What a delta reflects of L(r): A and B at θe, as its integrals have them.
+/// What a delta reflects of L(r): A and B at θe, as its integrals have them, times its factors at θi = θe.
 fn delta(lobe: &Lobe, theta_e: f64) -> Result<[f64; 2]> {
     let (mu, setting) = (theta_e.cos().max(0.0), lobe.setting_at(None)?);
-    match lobe.model().integral {
-        Integral::Delta(directional) => Ok(directional(mu, &setting)),
-        Integral::Slopes(slopes) => Ok((slopes.mirror_limit)(mu, &setting)),
-        _ => Err(Error::input(format!("{} at this roughness is a delta; give it more", lobe.model().name))),
-    }
+    let components = match lobe.model().integral {
+        Integral::Delta(directional) => directional(mu, &setting),
+        Integral::Slopes(slopes) => (slopes.mirror_limit)(mu, &setting),
+        _ => {
+            let why = format!("{} at this roughness is a delta; give it more", lobe.model().name);
+            return Err(Error::input(why));
+        }
+    };
+    let factor = Scale::new(lobe.factors(), lobe.roughness()).at(mu, mu);
+    Ok(components.map(|component| factor * component))
 }
 
 /// About half the width of a lobe around the mirror direction, rad: α, and less where it is stretched.

@@ -24,7 +24,6 @@ use crate::model::fresnel::schlick;
 use crate::model::half_vector;
 use crate::model::half_vector::Kinks;
 use crate::model::{Component, Integral, Model, Shape, part};
-use crate::reference;
 use std::f64::consts::FRAC_1_PI;
 
 pub(crate) static MODEL: Model = Model {
@@ -52,5 +51,4 @@ pub(crate) static MODEL: Model = Model {
         let row = 0.125 * FRAC_1_PI * (2.0 - a2) / (a2 * p.mu_i.max(p.mu_e));
         schlick::fresnel(h.c, h.one_minus_c).map(|f| f * row * root * root / h.c)
     },
-    reference: Some(reference::ASHIKHMIN_SHIRLEY),
 };

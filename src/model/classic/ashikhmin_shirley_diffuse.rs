@@ -17,7 +17,6 @@
 use crate::base::precision::VALUE_F32;
 use crate::base::tolerance::decade;
 use crate::model::{Component, Integral, Model, part};
-use crate::reference;
 use std::f64::consts::PI;
 
 pub(crate) static MODEL: Model = Model {
@@ -34,7 +33,6 @@ pub(crate) static MODEL: Model = Model {
     value_f32: VALUE_F32,
     integral: Integral::Smooth(nodes),
     lobe: |p, _, _| [28.0 / (23.0 * PI) * through(p.mu_i) * through(p.mu_e), 0.0],
-    reference: Some(reference::ASHIKHMIN_SHIRLEY_DIFFUSE),
 };
 
 /// 1 − (1 − μ/2)⁵

@@ -24,7 +24,6 @@ use crate::model::classic::cosine::COSINE_F32;
 use crate::model::directions::Map;
 use crate::model::half_vector::Kinks;
 use crate::model::{Component, Integral, Model, Shape, part};
-use crate::reference;
 use std::f64::consts::{LN_2, PI};
 
 pub(crate) static MODEL: Model = Model {
@@ -49,7 +48,6 @@ pub(crate) static MODEL: Model = Model {
         let root = cosine::root_of_power(&Half::new(p, a), p.hz2, s);
         [scale(s.alpha) * root * root, 0.0]
     },
-    reference: Some(reference::BLINN),
 };
 
 /// (n + 2)(n + 4) / (8π (n + 2^(−n/2))) = (1 + α²) / (2π α² (2 (1 − α²) + α² 2^(−n/2)))

@@ -29,7 +29,6 @@ use crate::model::directions::Map;
 use crate::model::half_vector::mean_by;
 use crate::model::parameters::Parameters;
 use crate::model::{Component, Integral, Model, Parameter, Shape, part};
-use crate::reference;
 
 pub(crate) static MODEL: Model = Model {
     name: "lafortune",
@@ -56,7 +55,6 @@ pub(crate) static MODEL: Model = Model {
         let turned = (1.0 - cxy) * a.sin2 + (1.0 + cxy) * a.cos2;
         axis::power(cosine, 2.0 * p.sd + (1.0 - cz) * mu2 + p.ss * turned, s)
     },
-    reference: Some(reference::LAFORTUNE),
 };
 
 const CXY: usize = 0;

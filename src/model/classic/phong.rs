@@ -32,7 +32,6 @@ use crate::model::classic::axis::{AXIS_F32, Axis};
 use crate::model::directions::Map;
 use crate::model::half_vector;
 use crate::model::{Component, Integral, Model, Shape, part};
-use crate::reference;
 
 pub(crate) static MODEL: Model = Model {
     name: "phong",
@@ -56,5 +55,4 @@ pub(crate) static MODEL: Model = Model {
         let cosine = p.mu_i * p.mu_e + p.ss * (a.cos2 - a.sin2);
         axis::power(cosine, 2.0 * (p.sd + p.ss * a.sin2), s)
     },
-    reference: Some(reference::PHONG),
 };

@@ -19,7 +19,6 @@
 use crate::base::half_angle::Half;
 use crate::model::classic::gaussian::GAUSSIAN_F32;
 use crate::model::{Component, Integral, Model, Shape, part};
-use crate::reference;
 use std::f64::consts::FRAC_1_PI;
 
 pub(crate) static MODEL: Model = Model {
@@ -43,5 +42,4 @@ pub(crate) static MODEL: Model = Model {
         let root = (-0.5 * h.ht2 / (s.alpha * s.alpha * p.hz2)).exp();
         [row * root * root, 0.0]
     },
-    reference: Some(reference::WARD),
 };

@@ -27,7 +27,6 @@ use crate::model::ndf::Ndf;
 use crate::model::ndf::beckmann::Beckmann;
 use crate::model::parameters::Setting;
 use crate::model::{Component, Integral, Model, Shape, SlopeCounts, part};
-use crate::reference;
 use std::f64::consts::PI;
 
 pub(crate) static MODEL: Model = Model {
@@ -53,7 +52,6 @@ pub(crate) static MODEL: Model = Model {
         let root = (-0.5 * h.ht2 / (s.alpha * s.alpha * p.hz2)).exp() * h.c / (s.alpha * p.hz2);
         [root * root / (4.0 * PI), 0.0]
     },
-    reference: Some(reference::WARD_DUR),
 };
 
 /// 1/(ωi·ωm)² turns as Kelemen's does.

@@ -20,7 +20,6 @@ use crate::base::precision::VALUE_F32;
 use crate::model::diffuse::grazing;
 use crate::model::diffuse::grazing::{cos2_d, scatter};
 use crate::model::{Component, Integral, Model, Shape, part};
-use crate::reference;
 use std::f64::consts::FRAC_2_SQRT_PI;
 
 pub(crate) static MODEL: Model = Model {
@@ -40,7 +39,6 @@ pub(crate) static MODEL: Model = Model {
         let f90 = 0.5 + 2.0 * s.alpha * cos2_d(p, a);
         [(INV_SQRT_PI * scatter(p.mu_i, f90)) * (INV_SQRT_PI * scatter(p.mu_e, f90)), 0.0]
     },
-    reference: Some(reference::BURLEY),
 };
 
 /// 1/√π, once for each direction, as the shader has it.

@@ -19,7 +19,6 @@ use crate::base::precision::VALUE_F32;
 use crate::base::tolerance::decade;
 use crate::model::fresnel::schlick;
 use crate::model::{Component, Integral, Model, part};
-use crate::reference;
 
 pub(crate) static MODEL: Model = Model {
     name: "disney-sheen",
@@ -38,7 +37,6 @@ pub(crate) static MODEL: Model = Model {
         let h = Half::new(p, a);
         [schlick::fresnel(h.c, h.one_minus_c)[1], 0.0]
     },
-    reference: Some(reference::DISNEY_SHEEN),
 };
 
 /// Nodes in θe and δφ for tolerances 1e-1 … 1e-10, measured: the error of each count alone, worst over

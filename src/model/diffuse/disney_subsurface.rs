@@ -26,7 +26,6 @@ use crate::model::directions::{Fixed, Map, Sample};
 use crate::model::panels::directions;
 use crate::model::parameters::Setting;
 use crate::model::{Component, Integral, Model, Shape, part};
-use crate::reference;
 use std::f64::consts::FRAC_1_PI;
 
 pub(crate) static MODEL: Model = Model {
@@ -53,7 +52,6 @@ pub(crate) static MODEL: Model = Model {
         let flat = (1.0 - m) / (2.0 * m);
         [1.25 * FRAC_1_PI * (scatter(p.mu_i, f90) * scatter(p.mu_e, f90) * flat + 0.5), 0.0]
     },
-    reference: Some(reference::DISNEY_SUBSURFACE),
 };
 
 /// 1/(μi + μe) turns at μe = μi.

@@ -28,7 +28,6 @@ use crate::base::precision::VALUE_F32;
 use crate::base::tolerance::decade;
 use crate::model::diffuse::retro;
 use crate::model::{Component, Integral, Model, Parameter, Shape, part};
-use crate::reference;
 use std::f64::consts::{FRAC_1_PI, PI};
 
 pub(crate) static MODEL: Model = Model {
@@ -61,7 +60,6 @@ pub(crate) static MODEL: Model = Model {
         let more = scale * (lost_at(p.mu_i) * lost_at(p.mu_e));
         [rho * FRAC_1_PI * n * (1.0 + o * retro::one_plus_s_over_t(p, a)) + more, 0.0]
     },
-    reference: Some(reference::EON),
 };
 
 const ALBEDO: usize = 0;

@@ -21,7 +21,6 @@ use crate::base::precision::VALUE_F32;
 use crate::model::diffuse::grazing;
 use crate::model::diffuse::grazing::{cos2_d, scatter};
 use crate::model::{Component, Integral, Model, Shape, part};
-use crate::reference;
 use std::f64::consts::FRAC_1_PI;
 
 pub(crate) static MODEL: Model = Model {
@@ -42,5 +41,4 @@ pub(crate) static MODEL: Model = Model {
         let factor = FRAC_1_PI * (1.0 - s.alpha * (0.51 / 1.51));
         [factor * (scatter(p.mu_i, f90) * scatter(p.mu_e, f90)), 0.0]
     },
-    reference: Some(reference::FROSTBITE),
 };

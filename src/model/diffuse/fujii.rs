@@ -26,7 +26,6 @@ use crate::base::precision::VALUE_F32;
 use crate::base::tolerance::decade;
 use crate::model::diffuse::retro;
 use crate::model::{Component, Integral, Model, Shape, part};
-use crate::reference;
 use std::f64::consts::FRAC_1_PI;
 
 pub(crate) static MODEL: Model = Model {
@@ -46,7 +45,6 @@ pub(crate) static MODEL: Model = Model {
         let o = Shape::SHARE.on_device(s.alpha);
         [FRAC_1_PI / (1.0 + ONE_PLUS_K * o) * (1.0 + o * retro::one_plus_s_over_t(p, a)), 0.0]
     },
-    reference: Some(reference::FUJII),
 };
 
 /// 1 + k, k = 1/2 − 2/(3π).

@@ -5,7 +5,6 @@ use crate::base::precision::VALUE_F32;
 use crate::base::tolerance::decade;
 use crate::model::fresnel::schlick;
 use crate::model::{Component, Integral, Model, part};
-use crate::reference;
 use std::f64::consts::FRAC_1_PI;
 
 pub(crate) static MODEL: Model = Model {
@@ -25,7 +24,6 @@ pub(crate) static MODEL: Model = Model {
         let h = Half::new(p, a);
         [schlick::fresnel(h.c, h.one_minus_c)[0] * FRAC_1_PI, 0.0]
     },
-    reference: Some(reference::GLTF_DIFFUSE),
 };
 
 /// Nodes in θe and δφ for tolerances 1e-1 … 1e-10, measured: the error of each count alone, worst over

@@ -20,7 +20,6 @@ use crate::base::tolerance::decade;
 use crate::model::diffuse::retro;
 use crate::model::fresnel::schlick;
 use crate::model::{Component, Integral, Model, Shape, part};
-use crate::reference;
 use std::f64::consts::FRAC_1_PI;
 
 pub(crate) static MODEL: Model = Model {
@@ -43,7 +42,6 @@ pub(crate) static MODEL: Model = Model {
         let rough = FRAC_1_PI * (a_term + b_term * retro::retro(p, a));
         [schlick::fresnel(h.c, h.one_minus_c)[0] * rough, 0.0]
     },
-    reference: Some(reference::GLTF_OREN_NAYAR),
 };
 
 /// Nodes in each panel of θe and of δφ for tolerances 1e-1 … 1e-10, measured (`nodes.rs`): the error of each

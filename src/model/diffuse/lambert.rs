@@ -2,7 +2,6 @@
 
 use crate::base::precision::VALUE_F32;
 use crate::model::{Component, Integral, Model, part};
-use crate::reference;
 use std::f64::consts::FRAC_1_PI;
 
 pub(crate) static MODEL: Model = Model {
@@ -19,5 +18,4 @@ pub(crate) static MODEL: Model = Model {
     value_f32: VALUE_F32,
     integral: Integral::Smooth(|_| [8, 1]),
     lobe: |_, _, _| [FRAC_1_PI, 0.0],
-    reference: Some(reference::LAMBERT),
 };

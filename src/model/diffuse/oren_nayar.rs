@@ -23,7 +23,6 @@ use crate::base::precision::VALUE_F32;
 use crate::base::tolerance::decade;
 use crate::model::diffuse::retro;
 use crate::model::{Component, Integral, Model, Shape, part};
-use crate::reference;
 use std::f64::consts::FRAC_1_PI;
 
 pub(crate) static MODEL: Model = Model {
@@ -44,7 +43,6 @@ pub(crate) static MODEL: Model = Model {
         let (a_term, b_term) = (1.0 - 0.5 * s2 / (s2 + 0.33), 0.45 * s2 / (s2 + 0.09));
         [FRAC_1_PI * (a_term + b_term * retro::retro(p, a)), 0.0]
     },
-    reference: Some(reference::OREN_NAYAR),
 };
 
 /// Nodes in each panel of θe and of δφ for tolerances 1e-1 … 1e-10, measured (`nodes.rs`): the error of each

@@ -26,7 +26,6 @@ use crate::model::fresnel::metals::METALS;
 use crate::model::fresnel::{Fresnel, exact};
 use crate::model::parameters::{Parameters, Setting};
 use crate::model::{Component, Metal, Parameter, SlopeCounts, Term, part};
-use crate::reference;
 
 pub(crate) struct Conductor;
 
@@ -40,7 +39,6 @@ impl Fresnel for Conductor {
         source: "Fresnel's equations as in Born & Wolf 1999, section 14.2",
         part: part!("fresnel/conductor"),
     };
-    const REFERENCE: &'static dyn reference::Fresnel = &reference::Conductor;
     const COMPONENTS: &'static [Component] = &Component::SPECULAR;
     const PARAMETERS: &'static [Parameter] = &[
         Parameter {

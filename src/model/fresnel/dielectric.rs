@@ -22,7 +22,6 @@
 use crate::model::fresnel::{Fresnel, exact};
 use crate::model::parameters::{Parameters, Setting};
 use crate::model::{Component, Parameter, SlopeCounts, Term, part};
-use crate::reference;
 
 pub(crate) struct Dielectric;
 
@@ -35,7 +34,6 @@ impl Fresnel for Dielectric {
         source: "Fresnel's equations as in Walter et al. 2007, eq. 22",
         part: part!("fresnel/dielectric"),
     };
-    const REFERENCE: &'static dyn reference::Fresnel = &reference::Dielectric;
     const COMPONENTS: &'static [Component] = &Component::SPECULAR;
     const PARAMETERS: &'static [Parameter] = &[Parameter {
         name: "eta",

@@ -28,7 +28,6 @@
 use crate::model::fresnel::Fresnel;
 use crate::model::parameters::{Parameters, Setting};
 use crate::model::{Component, Parameter, SlopeCounts, Term, part};
-use crate::reference;
 
 pub(crate) struct F82;
 
@@ -43,7 +42,6 @@ impl Fresnel for F82 {
         source: "Kutz, Hašan & Edmondson 2021; Hoffman 2019; Lazányi & Szirmay-Kalos 2005",
         part: part!("fresnel/f82"),
     };
-    const REFERENCE: &'static dyn reference::Fresnel = &reference::F82;
     const COMPONENTS: &'static [Component] = &Component::schlick(0.8);
     const PARAMETERS: &'static [Parameter] = &[Parameter {
         name: "f82",

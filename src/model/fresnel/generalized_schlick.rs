@@ -22,7 +22,6 @@ use crate::base::tolerance::is_fine;
 use crate::model::fresnel::Fresnel;
 use crate::model::parameters::Setting;
 use crate::model::{Component, Parameter, SlopeCounts, Term, part};
-use crate::reference;
 
 pub(crate) struct GeneralizedSchlick;
 
@@ -35,7 +34,6 @@ impl Fresnel for GeneralizedSchlick {
         source: "Schlick 1994, eq. 15; MaterialX's generalized_schlick_bsdf",
         part: part!("fresnel/generalized_schlick", "elementary"),
     };
-    const REFERENCE: &'static dyn reference::Fresnel = &reference::GeneralizedSchlick;
     const COMPONENTS: &'static [Component] = &Component::schlick(0.04);
     const VALUE_F32: f64 = EXPONENT_F32;
     const PARAMETERS: &'static [Parameter] = &[Parameter {

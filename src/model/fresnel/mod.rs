@@ -12,12 +12,10 @@ pub(crate) mod thin_film;
 use crate::base::tolerance::{decade, is_fine};
 use crate::model::parameters::{Parameters, Setting};
 use crate::model::{Component, Metal, Parameter, SlopeCounts, Term};
-use crate::reference;
 
 /// F, split by what a material weighs.
 pub(crate) trait Fresnel {
     const TERM: Term;
-    const REFERENCE: &'static dyn reference::Fresnel;
     const COMPONENTS: &'static [Component];
     /// Whether it is a polynomial of c with coefficients of no more than some ones: it then leaves ρ as analytic as the
     /// NDF does, and tables may be spread from few integrals.

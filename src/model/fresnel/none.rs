@@ -3,7 +3,6 @@
 use crate::model::fresnel::Fresnel;
 use crate::model::parameters::Setting;
 use crate::model::{Component, Term, part};
-use crate::reference;
 
 pub(crate) struct Constant;
 
@@ -14,7 +13,6 @@ impl Fresnel for Constant {
         source: "F = 1 under the weight F0",
         part: part!("fresnel/none"),
     };
-    const REFERENCE: &'static dyn reference::Fresnel = &reference::Constant;
     // The name that this reflectance has in every other Fresnel term.
     const POLYNOMIAL: bool = true;
     const COMPONENTS: &'static [Component] = &[Component { name: "A", weight: "f0", default: Some(1.0) }];

@@ -3,7 +3,6 @@
 use crate::model::fresnel::Fresnel;
 use crate::model::parameters::Setting;
 use crate::model::{Component, Part, Term, part};
-use crate::reference;
 
 pub(crate) const PART: Part = part!("fresnel/schlick");
 
@@ -16,7 +15,6 @@ impl Fresnel for Schlick {
         source: "Schlick 1994, eq. 15",
         part: PART,
     };
-    const REFERENCE: &'static dyn reference::Fresnel = &reference::Schlick;
     const POLYNOMIAL: bool = true;
     const COMPONENTS: &'static [Component] = &Component::schlick(0.04);
 

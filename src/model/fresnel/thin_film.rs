@@ -44,7 +44,6 @@ use crate::base::tolerance::decade;
 use crate::model::fresnel::Fresnel;
 use crate::model::parameters::{Parameters, Setting};
 use crate::model::{Component, Parameter, SlopeCounts, Term, part};
-use crate::reference;
 use std::cell::Cell;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -62,7 +61,6 @@ impl Fresnel for ThinFilm {
         source: "Belcour & Barla 2017 as in KHR_materials_iridescence",
         part: part!("fresnel/thin_film", "elementary"),
     };
-    const REFERENCE: &'static dyn reference::Fresnel = &reference::ThinFilm;
     const COMPONENTS: &'static [Component] = &Component::SPECULAR;
     const BOUND: f64 = 1.29;
     const VALUE_F32: f64 = FILM_F32;

@@ -11,7 +11,6 @@ use crate::model::masking::{Masking, Toward};
 use crate::model::ndf::Ndf;
 use crate::model::parameters::Setting;
 use crate::model::{SlopeCounts, Term, part};
-use crate::reference;
 
 pub(crate) struct AshikhminNeubelt;
 
@@ -24,7 +23,6 @@ impl Masking for AshikhminNeubelt {
     };
     /// Measured: interpolation leaves 1.9e-7 of 1e-6, where 1.3e-7 is its share.
     const SPREADS: bool = false;
-    const REFERENCE: &'static dyn reference::Masking = &reference::AshikhminNeubelt;
 
     /// Where correlated Smith is nearly constant, this is not: measured; none leaves 3.7 times 1e-7.
     fn counts(correlated: [SlopeCounts; 2], _tolerance: f64) -> [SlopeCounts; 2] {

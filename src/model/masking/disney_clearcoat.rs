@@ -11,7 +11,6 @@ use crate::model::masking::{Masking, Toward};
 use crate::model::ndf::Ndf;
 use crate::model::parameters::Setting;
 use crate::model::{SlopeCounts, Term, part};
-use crate::reference;
 
 pub(crate) struct DisneyClearcoat;
 
@@ -24,7 +23,6 @@ impl Masking for DisneyClearcoat {
     };
     /// Its branch points are at μ = ±i/√15 whatever α is.
     const SPREADS: bool = false;
-    const REFERENCE: &'static dyn reference::Masking = &reference::DisneyClearcoat;
 
     /// G1 bends at μ ~ 1/4 where the normals' own Λ, of a small α, is nearly constant: measured.
     fn counts(correlated: [SlopeCounts; 2], tolerance: f64) -> [SlopeCounts; 2] {

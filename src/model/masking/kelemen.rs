@@ -9,7 +9,6 @@ use crate::model::half_vector::Kinks;
 use crate::model::masking::{Masking, Toward};
 use crate::model::ndf::Ndf;
 use crate::model::{SlopeCounts, Term, part};
-use crate::reference;
 
 pub(crate) struct Kelemen;
 
@@ -20,7 +19,6 @@ impl Masking for Kelemen {
         source: "Kelemen & Szirmay-Kalos 2001",
         part: part!("masking/kelemen"),
     };
-    const REFERENCE: &'static dyn reference::Masking = &reference::Kelemen;
     const OF_NORMAL: bool = true;
     /// ωi·ωm = cos θm cos θi (1 + c tan θm): its inverse turns at tan θm ~ 1/c, that is μ.
     const KINKS: Kinks = Kinks { turn: |c| (c > 0.0).then(|| 1.0 / c), is_sharp: true, ..Kinks::NONE };

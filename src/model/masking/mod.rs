@@ -16,7 +16,6 @@ use crate::model::half_vector::Kinks;
 use crate::model::ndf::Ndf;
 use crate::model::parameters::Setting;
 use crate::model::{SlopeCounts, Term};
-use crate::reference;
 
 /// A direction: its cosine, and the setting with the α that is seen from it.
 pub(crate) struct Toward {
@@ -27,7 +26,6 @@ pub(crate) struct Toward {
 /// G2 of the normals of `N`.
 pub(crate) trait Masking {
     const TERM: Term;
-    const REFERENCE: &'static dyn reference::Masking;
     /// Why ρ has no bound, if it has none.
     const UNBOUNDED: Option<&'static str> = None;
 

@@ -4,7 +4,6 @@ use crate::model::masking::{Masking, Toward};
 use crate::model::ndf::Ndf;
 use crate::model::parameters::Setting;
 use crate::model::{Term, part};
-use crate::reference;
 
 pub(crate) struct Unmasked;
 
@@ -15,7 +14,6 @@ impl Masking for Unmasked {
         source: "Torrance & Sparrow 1967 with G = 1",
         part: part!("masking/none"),
     };
-    const REFERENCE: &'static dyn reference::Masking = &reference::Unmasked;
     const UNBOUNDED: Option<&'static str> =
         Some("without masking ρ grows as α/μ at grazing, beyond any bound, and no tolerance holds there");
 

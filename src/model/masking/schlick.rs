@@ -4,12 +4,10 @@ use crate::model::masking::{Masking, Toward};
 use crate::model::ndf::Ndf;
 use crate::model::parameters::Setting;
 use crate::model::{SlopeCounts, Term};
-use crate::reference;
 
 /// A choice of k.
 pub(crate) trait Schlick {
     const TERM: Term;
-    const REFERENCE: &'static dyn reference::Masking;
 
     const UNBOUNDED_OFF_PEAK: Option<&'static str> = None;
 
@@ -19,7 +17,6 @@ pub(crate) trait Schlick {
 
 impl<S: Schlick> Masking for S {
     const TERM: Term = S::TERM;
-    const REFERENCE: &'static dyn reference::Masking = S::REFERENCE;
     const UNBOUNDED_OFF_PEAK: Option<&'static str> = S::UNBOUNDED_OFF_PEAK;
 
     fn counts(correlated: [SlopeCounts; 2], _tolerance: f64) -> [SlopeCounts; 2] {

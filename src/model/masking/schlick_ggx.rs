@@ -6,7 +6,6 @@
 
 use crate::model::masking::schlick::Schlick;
 use crate::model::{Term, part};
-use crate::reference;
 
 pub(crate) struct SchlickGgx;
 
@@ -17,7 +16,6 @@ impl Schlick for SchlickGgx {
         source: "Schlick 1994; Karis 2013, Real Shading in Unreal Engine 4",
         part: part!("masking/schlick_ggx", "masking/schlick"),
     };
-    const REFERENCE: &'static dyn reference::Masking = &reference::SchlickGgx;
     const UNBOUNDED_OFF_PEAK: Option<&'static str> = Some(
         "without a peak ρ grows as α → 0 where k vanishes, beyond any bound, and no tolerance holds there",
     );

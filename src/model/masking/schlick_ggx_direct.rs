@@ -5,7 +5,6 @@
 
 use crate::model::masking::schlick::Schlick;
 use crate::model::{Term, part};
-use crate::reference;
 
 pub(crate) struct SchlickGgxDirect;
 
@@ -16,7 +15,6 @@ impl Schlick for SchlickGgxDirect {
         source: "Schlick 1994; Karis 2013, Real Shading in Unreal Engine 4",
         part: part!("masking/schlick_ggx_direct", "masking/schlick"),
     };
-    const REFERENCE: &'static dyn reference::Masking = &reference::SchlickGgxDirect;
 
     fn k(alpha: f64) -> f64 {
         0.125 * (alpha.sqrt() + 1.0).powi(2)

@@ -5,7 +5,6 @@ use crate::model::masking::{Masking, Toward};
 use crate::model::ndf::Ndf;
 use crate::model::parameters::Setting;
 use crate::model::{Term, part};
-use crate::reference;
 
 pub(crate) struct SmithCorrelated;
 
@@ -16,7 +15,6 @@ impl Masking for SmithCorrelated {
         source: "Heitz 2014, eq. 99",
         part: part!("masking/smith_correlated"),
     };
-    const REFERENCE: &'static dyn reference::Masking = &reference::SmithCorrelated;
 
     fn visibility<N: Ndf>(i: &Toward, e: &Toward) -> f64 {
         0.5 / (i.mu * N::smith_root(e.mu, &e.setting) + e.mu * N::smith_root(i.mu, &i.setting))

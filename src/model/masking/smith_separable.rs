@@ -6,7 +6,6 @@ use crate::model::masking::{Masking, Toward};
 use crate::model::ndf::Ndf;
 use crate::model::parameters::Setting;
 use crate::model::{SlopeCounts, Term, part};
-use crate::reference;
 
 pub(crate) struct SmithSeparable;
 
@@ -17,7 +16,6 @@ impl Masking for SmithSeparable {
         source: "Walter et al. 2007, eq. 23",
         part: part!("masking/smith_separable"),
     };
-    const REFERENCE: &'static dyn reference::Masking = &reference::SmithSeparable;
 
     /// More on the near side: for μ ≪ α its G2 bends where G1(ωi) does, which correlated heights wash out by
     /// Λ(ωe). Measured: an eighth more leaves 1.1 times 1e-6.

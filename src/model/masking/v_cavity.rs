@@ -10,7 +10,6 @@ use crate::model::half_vector::{DirectionKinks, Kinks};
 use crate::model::masking::{Masking, Toward};
 use crate::model::ndf::Ndf;
 use crate::model::{SlopeCounts, Term, part};
-use crate::reference;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI};
 
 pub(crate) struct VCavity;
@@ -22,7 +21,6 @@ impl Masking for VCavity {
         source: "Torrance & Sparrow 1967; Cook & Torrance 1982, section 4",
         part: part!("masking/v_cavity"),
     };
-    const REFERENCE: &'static dyn reference::Masking = &reference::VCavity;
     const OF_NORMAL: bool = true;
     const KINKS: Kinks = Kinks {
         breaks,

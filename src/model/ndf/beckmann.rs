@@ -11,7 +11,6 @@ use crate::model::ndf::stretched::Stretch;
 use crate::model::ndf::{Map, Ndf};
 use crate::model::parameters::Setting;
 use crate::model::{Part, SlopeCounts, Term, part};
-use crate::reference;
 use libm::erf;
 use std::f64::consts::{FRAC_1_PI, PI};
 
@@ -28,7 +27,6 @@ impl Ndf for Beckmann {
         source: "Walter et al. 2007, eq. 20 and 25",
         part: part!("ndf/beckmann", "elementary", "ndf/smith_of_beckmann", "ndf/smith"),
     };
-    const REFERENCE: &'static dyn reference::Ndf = &reference::Beckmann;
     const VALUE_F32: f64 = BECKMANN_F32;
     const MAPS: Option<[Part; 2]> = Some([part!("ndf/beckmann_coarse"), part!("ndf/beckmann_fine")]);
     /// Measured, of α = 1 where ωi grazes.

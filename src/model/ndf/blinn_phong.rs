@@ -20,7 +20,6 @@ use crate::model::ndf::beckmann::Beckmann;
 use crate::model::ndf::{Map, Ndf};
 use crate::model::parameters::Setting;
 use crate::model::{SlopeCounts, Term, part};
-use crate::reference;
 use std::f64::consts::FRAC_1_PI;
 
 pub(crate) struct BlinnPhong;
@@ -36,7 +35,6 @@ impl Ndf for BlinnPhong {
         source: "Walter et al. 2007, eq. 20 and 30",
         part: part!("ndf/blinn_phong", "elementary", "ndf/smith_of_beckmann", "ndf/smith"),
     };
-    const REFERENCE: &'static dyn reference::Ndf = &reference::BlinnPhong;
     const VALUE_F32: f64 = BLINN_PHONG_F32;
     /// √π, and measured; of α = 1 at grazing.
     const RHO_BOUNDS: &'static [(&'static str, f64)] =

@@ -28,7 +28,6 @@ use crate::model::masking::Masking;
 use crate::model::ndf::{Mean, Ndf, charlie_map};
 use crate::model::parameters::Setting;
 use crate::model::{Shape, SlopeCounts, Term, part};
-use crate::reference;
 use std::f64::consts::TAU;
 
 pub(crate) struct Charlie;
@@ -52,7 +51,6 @@ impl Ndf for Charlie {
         source: "Estevez & Kulla 2017, eq. 2 to 4",
         part: part!("ndf/charlie", "elementary", "ndf/smith"),
     };
-    const REFERENCE: &'static dyn reference::Ndf = &reference::Charlie;
     const SHAPE: Shape = Shape::SHEEN;
     const IS_MIRROR_AT_0: bool = false;
     /// Where Λ's branches meet.

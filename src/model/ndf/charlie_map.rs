@@ -172,6 +172,7 @@ mod tests {
     use crate::model::masking::v_cavity::VCavity;
     use crate::model::ndf::charlie::ALPHA_LEAST;
     use crate::model::parameters::Setting;
+    use crate::model::truth;
     use crate::model::{Integral, Model};
     use rayon::prelude::*;
 
@@ -212,7 +213,7 @@ mod tests {
                 let most = SlopeCounts { azimuths: 70, nodes: 80 };
                 let exact = sum(model, plenty(mu, &[], most, 1e-10), &s);
                 if k < 6 {
-                    let truth = model.reference.unwrap().rho_dh(mu, &s);
+                    let truth = truth::rho_dh(model, mu, &s);
                     let error = (exact[0] - truth[0]).abs().max((exact[1] - truth[1]).abs());
                     assert!(error < 5e-10, "{name}, μ = {mu}, {s:?}: {error:e}");
                 }

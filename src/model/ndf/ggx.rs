@@ -7,7 +7,6 @@ use crate::model::ndf::stretched::Stretch;
 use crate::model::ndf::{Map, Ndf, ggx_coarse, ggx_fine, ggx_nodes, ggx_samples};
 use crate::model::parameters::Setting;
 use crate::model::{Branches, Part, SlopeCounts, Term, part};
-use crate::reference;
 use std::f64::consts::FRAC_1_PI;
 
 pub(crate) struct Ggx;
@@ -19,7 +18,6 @@ impl Ndf for Ggx {
         source: "Walter et al. 2007, eq. 20 and 33",
         part: part!("ndf/ggx", "ndf/smith_of_ggx"),
     };
-    const REFERENCE: &'static dyn reference::Ndf = &reference::Ggx;
     const MAPS: Option<[Part; 2]> = Some([ggx_coarse::PART, ggx_fine::PART]);
     const SAMPLES: Option<Part> = Some(ggx_samples::PART);
     /// Smith's root α² + (1 − α²) μ² vanishes at μ = ±iα/√(1 − α²), and the map ends at its own branch point,

@@ -30,7 +30,6 @@ use crate::model::masking::Masking;
 use crate::model::ndf::{Map, Mean, Ndf};
 use crate::model::parameters::Setting;
 use crate::model::{Parameter, Shape, SlopeCounts, Term, part};
-use crate::reference;
 use std::f64::consts::{FRAC_1_PI, TAU};
 
 pub(crate) struct Gtr;
@@ -53,7 +52,6 @@ impl Ndf for Gtr {
         source: "Burley 2012, appendix B",
         part: part!("ndf/gtr", "elementary", "ndf/smith_of_ggx"),
     };
-    const REFERENCE: &'static dyn reference::Ndf = &reference::Gtr;
     const SHAPE: Shape = Shape::GTR;
     const PARAMETERS: &'static [Parameter] = &[Parameter {
         name: "gamma",
@@ -204,6 +202,7 @@ mod tests {
     use crate::model::masking::smith_correlated::SmithCorrelated;
     use crate::model::masking::smith_separable::SmithSeparable;
     use crate::model::masking::v_cavity::VCavity;
+    use crate::model::truth;
     use crate::model::{Integral, Model};
     use rayon::prelude::*;
 
@@ -265,7 +264,7 @@ mod tests {
                 );
                 let exact = sum(model, plenty(&fixed(mu), &s, PLENTY, 1e-10), &s);
                 if k < 6 {
-                    let truth = model.reference.unwrap().rho_dh(mu, &s);
+                    let truth = truth::rho_dh(model, mu, &s);
                     let error = (exact[0] - truth[0]).abs().max((exact[1] - truth[1]).abs());
                     assert!(error < 2e-9, "{name}, μ = {mu}, {s:?}: {error:e}");
                 }

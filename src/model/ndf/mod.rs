@@ -19,12 +19,10 @@ use crate::model::fresnel::Fresnel;
 use crate::model::masking::Masking;
 use crate::model::parameters::{Parameters, Setting};
 use crate::model::{Branches, Parameter, Part, Shape, SlopeCounts, Term, half_vector};
-use crate::reference;
 
 /// A distribution of normals, with the maps that integrate and sample it.
 pub(crate) trait Ndf: Sized {
     const TERM: Term;
-    const REFERENCE: &'static dyn reference::Ndf;
     /// The shaders of its maps, the coarse one first, for the kernel that integrates in slopes: without, the host finds
     /// directions by the fine map.
     const MAPS: Option<[Part; 2]> = None;

@@ -19,7 +19,6 @@ use crate::base::tolerance::decade;
 use crate::model::ndf::{Map, Ndf};
 use crate::model::parameters::{Parameters, Setting};
 use crate::model::{ALPHA_MIN_VALUE, Parameter, Shape, SlopeCounts, Term};
-use crate::reference;
 use std::marker::PhantomData;
 
 /// A distribution that can be stretched.
@@ -47,7 +46,6 @@ const INVERSE: usize = 2;
 
 impl<N: Stretch> Ndf for Stretched<N> {
     const TERM: Term = N::STRETCHED;
-    const REFERENCE: &'static dyn reference::Ndf = N::REFERENCE;
     const SHAPE: Shape = Shape::ALPHA_XY;
     const PARAMETERS: &'static [Parameter] = &[
         Parameter {

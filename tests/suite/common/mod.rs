@@ -7,10 +7,11 @@ use gonio::backend::gpu::{DeviceChoice, INSTALL};
 use gonio::bake::{Evaluator, Unobserved};
 use gonio::base::precision::{Precision, STORED_F32, VALUE_F32};
 use gonio::base::timings::Timings;
-use gonio::check::{Check, reference};
+use gonio::check::{Check, reference, reference_of_model};
 use gonio::model;
 use gonio::model::Model;
 use gonio::plan::TablePlan;
+use gonio::reference::{Parameters, Reference, Setting};
 use gonio::table::Table;
 use gonio::table::axis::{Axis, Mapping, Positions, Variable};
 use gonio::table::quantity::{Quantity, RHO_DH, RHO_HH};
@@ -36,6 +37,16 @@ pub fn evaluators() -> [&'static Evaluator; 2] {
 
 pub fn model(name: &str) -> &'static Model {
     model::find(name).unwrap()
+}
+
+/// The f64 reference of the model of this name.
+pub fn reference_model(name: &str) -> &'static dyn Reference {
+    reference_of_model(model(name)).unwrap()
+}
+
+/// A setting of a reference by α, all parameters at their defaults.
+pub fn with_alpha(model: &dyn Reference, alpha: f64) -> Setting {
+    Setting::measured(model.measure(), alpha, &Parameters::DEFAULT).unwrap()
 }
 
 pub fn axis(variable: Variable, count: usize) -> Axis {

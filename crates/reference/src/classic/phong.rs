@@ -1,0 +1,17 @@
+//! Phong's lobe, normalised.
+
+use crate::Reference;
+use crate::classic::axis::{AboutAxis, Axis, exponent};
+use std::f64::consts::PI;
+
+/// Lafortune & Willems 1994: ks (n + 2)/(2π) cosⁿγ, γ from the mirror direction, at most π/2.
+pub static PHONG: &dyn Reference = &AboutAxis {
+    // The mirror direction R is (sin θi, 0, cos θi) in the frame of `Pair`, and ωe − R is (hx, hy, dz):
+    // cos γ = 1 − |ωe − R|²/2.
+    value: |pair, s| {
+        let n = exponent(s.alpha);
+        let versine = 0.5 * (pair.h.x * pair.h.x + pair.h.y * pair.h.y + pair.d.z * pair.d.z);
+        if versine >= 1.0 { 0.0 } else { (n + 2.0) / (2.0 * PI) * (n * (-versine).ln_1p()).exp() }
+    },
+    axis: |cos, sin, _| Axis { sin, cos, scale: 1.0 },
+};

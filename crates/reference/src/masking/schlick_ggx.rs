@@ -1,0 +1,27 @@
+//! Schlick's approximation of Smith's masking, with the two k that Karis gives.
+
+use crate::masking::{Facet, Masking};
+
+/// Karis 2013, *Real Shading in Unreal Engine 4*: k = α/2 for image-based light.
+pub(crate) struct SchlickGgx;
+
+/// The same, for lights: k = (roughness + 1)²/8 with α = roughness².
+pub(crate) struct SchlickGgxDirect;
+
+impl Masking for SchlickGgx {
+    fn g2(&self, facet: &Facet) -> f64 {
+        g2(facet, facet.alpha / 2.0)
+    }
+}
+
+impl Masking for SchlickGgxDirect {
+    fn g2(&self, facet: &Facet) -> f64 {
+        let roughness = facet.alpha.sqrt();
+        g2(facet, (roughness + 1.0).powi(2) / 8.0)
+    }
+}
+
+/// Schlick 1994: G(v) = n·v / (n·v (1 − k) + k) for each direction.
+fn g2(facet: &Facet, k: f64) -> f64 {
+    facet.mu.map(|mu| mu / (mu * (1.0 - k) + k)).iter().product()
+}

@@ -1,0 +1,161 @@
+//! The factors of a lobe, from the albedos that the reference integrates: nothing of the evaluators' tables.
+
+use super::reference::{Fixed, reference_of_albedo};
+use crate::model::compensation::{Albedo, Factor};
+use crate::model::lobe::Lobe;
+use gonio_reference::{MIN_MU, Reference, Setting, mean_of_rho_dh};
+use std::collections::HashMap;
+use std::f64::consts::PI;
+use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
+
+/// s(μi, μe): the product of some factors at a roughness.
+pub(super) struct Product {
+    factors: Vec<(Factor, Option<Arc<Curve>>)>,
+}
+
+impl Product {
+    /// Those of a lobe, in a row of this roughness if the table sweeps it; `None` where an albedo has no reference.
+    pub fn new(lobe: &Lobe, swept: Option<f64>) -> Option<Self> {
+        let row = swept.or(lobe.roughness());
+        let with_curve = |factor: &Factor| {
+            let curve = match factor.albedo() {
+                Some(albedo) => Some(Curve::new(albedo, row)?),
+                None => None,
+            };
+            Some((factor.clone(), curve))
+        };
+        Some(Self { factors: lobe.factors().iter().map(with_curve).collect::<Option<_>>()? })
+    }
+
+    /// s.
+    pub fn value(&self, mu_i: f64, mu_e: f64) -> f64 {
+        let one = |(factor, curve): &(Factor, Option<Arc<Curve>>)| {
+            let e = |mu: f64| curve.as_ref().map_or(f64::NAN, |curve| curve.albedo(mu));
+            let e_avg = || curve.as_ref().map_or(f64::NAN, |curve| curve.mean());
+            let fresnel = 0.04 + 0.96 * (1.0 - mu_e.clamp(MIN_MU, 1.0)).powi(5);
+            match factor {
+                // Kulla & Conty 2017: f_ms = (1 − E(μo)) (1 − E(μi)) / (π (1 − E_avg)), times
+                // F_ms = F_avg² E_avg / (1 − F_avg (1 − E_avg)).
+                Factor::Missing { f_avg, .. } => {
+                    let e_avg = e_avg();
+                    let missing = 1.0 - e_avg;
+                    if missing <= 0.0 {
+                        return 0.0;
+                    }
+                    let f_ms = f_avg.powi(2) * e_avg / (1.0 - f_avg * missing);
+                    (1.0 - e(mu_i)) * (1.0 - e(mu_e)) / missing * f_ms
+                }
+                // Turquin 2019: 1 + F0 (1 − E)/E.
+                Factor::Restored { f0, .. } => 1.0 + f0 * (1.0 / e(mu_e) - 1.0),
+                Factor::Coat { weight } => weight * fresnel,
+                Factor::BelowCoat { weight } => 1.0 - weight * fresnel,
+                // E above 1 counts as 1.
+                Factor::BelowSheen { most, .. } => 1.0 - most * f64::max(e(mu_i), e(mu_e)).min(1.0),
+            }
+        };
+        self.factors.iter().map(one).product()
+    }
+
+    /// ρ_dh of a lobe times s, with ωi fixed, or ωe.
+    pub fn rho_dh(&self, lobe: &dyn Reference, mu: f64, setting: &Setting, fixed: Fixed) -> [f64; 2] {
+        let mu = mu.clamp(MIN_MU, 1.0);
+        match fixed {
+            Fixed::Exitant => lobe.rho_dh_times(mu, setting, &|other| self.value(other, mu)),
+            Fixed::Incident => lobe.rho_dh_times(mu, setting, &|other| self.value(mu, other)),
+        }
+    }
+
+    /// ρ_hh of that.
+    pub fn rho_hh(&self, lobe: &dyn Reference, setting: &Setting) -> [f64; 2] {
+        let alphas = self.factors.iter().filter_map(|(_, curve)| Some(curve.as_ref()?.setting.alpha()));
+        let alpha = alphas.fold(setting.alpha(), f64::max);
+        mean_of_rho_dh(|mu| self.rho_dh(lobe, mu, setting, Fixed::Incident), alpha)
+    }
+}
+
+/// E(μ) by octaves of μ, each a polynomial through as many of its values as 1e-11 takes, when it is first asked for.
+struct Curve {
+    reference: &'static dyn Reference,
+    setting: Setting,
+    octaves: [OnceLock<[f64; DEGREE + 1]>; OCTAVES],
+    mean: OnceLock<f64>,
+}
+
+/// From 2⁻²⁴ to 1.
+const OCTAVES: usize = 24;
+/// E has branch points near ±iα and at 0: seen from an octave they are 5.8 of its ellipses away or more, and
+/// 5.8⁻¹⁵ = 3e-12.
+const DEGREE: usize = 15;
+/// How many curves are kept.
+const CURVES_KEPT: usize = 512;
+
+/// A model, the bits of its measure of a roughness, and those of its parameters.
+type Key = (&'static str, u64, [u64; 8]);
+static CURVES: LazyLock<Mutex<HashMap<Key, Arc<Curve>>>> = LazyLock::new(Mutex::default);
+
+impl Curve {
+    fn new(albedo: &Albedo, row: Option<f64>) -> Option<Arc<Self>> {
+        let (reference, setting) = reference_of_albedo(albedo, row)?;
+        let key = (albedo.model.name, setting.alpha().to_bits(), albedo.parameters.map(f64::to_bits));
+        let mut curves = CURVES.lock().unwrap_or_else(PoisonError::into_inner);
+        if curves.len() >= CURVES_KEPT {
+            curves.clear();
+        }
+        let new = || {
+            let octaves = std::array::from_fn(|_| OnceLock::new());
+            Arc::new(Self { reference, setting, octaves, mean: OnceLock::new() })
+        };
+        Some(curves.entry(key).or_insert_with(new).clone())
+    }
+
+    fn exact(&self, mu: f64) -> f64 {
+        self.reference.rho_dh(mu, &self.setting).into_iter().sum()
+    }
+
+    fn albedo(&self, mu: f64) -> f64 {
+        let mu = mu.clamp(MIN_MU, 1.0);
+        let octave = ((-mu.log2()).floor() as usize).min(OCTAVES - 1);
+        let high = 0.5f64.powi(octave as i32);
+        let point = |k: usize| (PI * (k as f64 + 0.5) / (DEGREE as f64 + 1.0)).cos();
+        let values = self.octaves[octave]
+            .get_or_init(|| std::array::from_fn(|k| self.exact(high * (0.75 + 0.25 * point(k)))));
+        // Lagrange's polynomial, by the barycentric formula for Chebyshev points of the first kind.
+        let x = (mu / high - 0.75) / 0.25;
+        let (mut above, mut below) = (0.0, 0.0);
+        for (k, value) in values.iter().enumerate() {
+            let distance = x - point(k);
+            if distance == 0.0 {
+                return *value;
+            }
+            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+            let weight = sign * (PI * (k as f64 + 0.5) / (DEGREE as f64 + 1.0)).sin() / distance;
+            above += weight * value;
+            below += weight;
+        }
+        above / below
+    }
+
+    fn mean(&self) -> f64 {
+        *self.mean.get_or_init(|| mean_of_rho_dh(|mu| [self.albedo(mu), 0.0], self.setting.alpha())[0])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model;
+
+    /// What is between the points of an octave is as good as the reference's integrals.
+    #[test]
+    fn octaves_hold_to_1e_10() {
+        let model = model::find("ggx-smith-correlated-none").unwrap();
+        for alpha in [1e-4, 0.01, 0.3, 1.0] {
+            let albedo = Albedo { model, roughness: Some(f64::sqrt(alpha)), parameters: model.defaults() };
+            let curve = Curve::new(&albedo, None).unwrap();
+            for mu in [1e-7, 3e-5, 2.1e-3, 0.0123, 0.26, 0.71, 0.987] {
+                let error = (curve.albedo(mu) - curve.exact(mu)).abs();
+                assert!(error <= 1e-10, "α = {alpha}, μ = {mu}: {error:e}");
+            }
+        }
+    }
+}
