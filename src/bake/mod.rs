@@ -6,6 +6,7 @@ use crate::backend::cpu;
 use crate::backend::gpu::{Device, DeviceChoice};
 use crate::base::error::{Error, Result};
 use crate::base::precision::{Precision, STORED_F32, VALUE_F32};
+use crate::base::timings::Stopwatch;
 use crate::base::timings::Timings;
 use crate::base::tolerance::FINEST;
 use crate::check::bilinear;
@@ -18,7 +19,6 @@ use crate::table::quantity::Evaluation;
 use crate::table::rule::Rule;
 use crate::table::storage::{Storage, Stored};
 use crate::table::{Table, TableError, Values};
-use std::time::Instant;
 
 /// What evaluates tables.
 pub enum Evaluator {
@@ -73,9 +73,9 @@ impl Evaluator {
     ) -> Result<Table> {
         let computed = self.compute(plan, check, stages, observer)?;
         observer.begin(&format!("checking {}", plan.name));
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let table = computed.check(plan, check, &|share| observer.advance(share));
-        stages.check += start.elapsed().as_secs_f64();
+        stages.check += start.seconds();
         table
     }
 
@@ -209,9 +209,9 @@ impl Path<'_> {
         match self {
             Self::Device(device, precision) => device.evaluate(plan, precision, stages, tick),
             Self::Cpu(_) => {
-                let start = Instant::now();
+                let start = Stopwatch::start();
                 let values = cpu::evaluate(plan, tick)?;
-                stages.dispatch += start.elapsed().as_secs_f64();
+                stages.dispatch += start.seconds();
                 Ok(Values::F64(values))
             }
         }
