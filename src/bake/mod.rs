@@ -1,6 +1,11 @@
 //! Bakes tables: evaluate, look, cross-check.
 
+/// Compares with the reference where the feature `check` is on; without it the estimate is all that is known.
+#[cfg_attr(not(feature = "check"), path = "unmeasured.rs")]
+mod measured;
 pub mod points;
+
+pub use crate::table::Check;
 
 use crate::backend::cpu;
 use crate::backend::gpu::{Device, DeviceChoice};
@@ -9,8 +14,6 @@ use crate::base::precision::{Precision, STORED_F32, VALUE_F32};
 use crate::base::timings::Stopwatch;
 use crate::base::timings::Timings;
 use crate::base::tolerance::FINEST;
-use crate::check::bilinear;
-use crate::check::{Check, cross_check};
 use crate::integrate::scale::factor_error;
 use crate::model::compensation::Factor;
 use crate::model::lobe::Lobe;
@@ -19,6 +22,7 @@ use crate::table::quantity::Evaluation;
 use crate::table::rule::Rule;
 use crate::table::storage::{Storage, Stored};
 use crate::table::{Table, TableError, Values};
+use measured::table_error;
 
 /// What evaluates tables.
 pub enum Evaluator {
@@ -159,9 +163,8 @@ impl Computed {
             .store(values, plan.quantity.error)
             .map_err(|why| Error::Promise(format!("table {}: {why}", plan.name)))?;
         let rounding = plan.stored().coarse_rounding(plan.quantity.error);
-        let mut error = cross_check(plan, &values, check, estimate.map(|e| e + rounding), tick)?;
+        let mut error = table_error(plan, &values, check, estimate.map(|e| e + rounding), tick)?;
         error.underflows = (plan.storage == Storage::F16).then_some(underflows);
-        error.interpolation = bilinear::measure(plan, &values, check)?;
         let table = origin.table(plan, values, error);
         table.check_sane()?;
         check_energy(plan, &table)?;

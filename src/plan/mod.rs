@@ -1,6 +1,8 @@
 //! The plan: which tables, over which axes, by which rule. Pure data: printable, comparable,
 //! testable without a device.
 
+mod unmeasured;
+
 use crate::base::error::{Error, Result};
 use crate::base::precision::{INTEGRAL_F32, Precision, VALUE_F32};
 use crate::model::compensation::{Compensation, Factor};

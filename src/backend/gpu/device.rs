@@ -44,14 +44,17 @@ pub struct Device {
     pub(crate) baker: Baker,
     /// What wgpu says of its adapter.
     pub info: wgpu::AdapterInfo,
-    #[cfg(feature = "files")]
+    #[cfg(feature = "batch")]
     adapter: Adapter,
     fault: Arc<Mutex<Option<String>>>,
     pub(crate) canary: OnceLock<Canary>,
 }
 
-/// All adapters that could bake, the best first.
+/// All adapters that could bake, the best first; none in a build without any back end of wgpu.
 pub fn adapters() -> Vec<Adapter> {
+    if wgpu::Instance::enabled_backend_features().is_empty() {
+        return Vec::new();
+    }
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: wgpu::Backends::PRIMARY,
         // No dispatch here is indirect: a device need not compile what would look after those.
@@ -121,7 +124,7 @@ impl Adapter {
         Ok(Device {
             baker: Baker::new(&device, &queue),
             info: self.info.clone(),
-            #[cfg(feature = "files")]
+            #[cfg(feature = "batch")]
             adapter: self.clone(),
             fault,
             canary: OnceLock::new(),
@@ -184,7 +187,7 @@ impl Device {
     }
 
     /// A new device on the same adapter, after this one was lost.
-    #[cfg(feature = "files")]
+    #[cfg(feature = "batch")]
     pub(crate) fn reopen(&self) -> Result<Self> {
         self.adapter.open()
     }

@@ -50,7 +50,7 @@ impl Device {
 
     /// The values of some rows of a table of values at a time, in f32 (a row is all azimuths of an α and a
     /// pair): `sink` gets each of `tiles` in order, while the device computes the next.
-    #[cfg(feature = "files")]
+    #[cfg(feature = "batch")]
     pub(crate) fn stream(
         &self,
         table: &TablePlan,

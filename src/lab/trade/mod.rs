@@ -5,17 +5,14 @@ mod candidates;
 mod costs;
 mod floor;
 mod front;
-#[cfg(feature = "files")]
 mod picture;
 mod subset;
 mod timing;
-#[cfg(feature = "files")]
 mod write;
 
 pub use costs::{Cost, costs};
 pub use floor::Floor;
 pub use front::front;
-#[cfg(feature = "files")]
 pub use write::write;
 
 use crate::bake::{Evaluator, Observer};
