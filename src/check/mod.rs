@@ -3,6 +3,7 @@
 pub(crate) mod bilinear;
 mod cross_check;
 mod factor;
+#[cfg(feature = "scene")]
 pub(crate) mod layout_search;
 mod reference;
 

@@ -64,6 +64,15 @@ impl Device {
         Ok(warm)
     }
 
+    /// Reads a tile that was computed, and appends its values.
+    fn read_back(&self, tile: &Tile, layout: &Layout, values: &mut Values) -> Result<()> {
+        let staging = self.staging(tile.buffer.size());
+        let encoder = self.baker.device.create_command_encoder(&Default::default());
+        let flight = self.send(encoder, &tile.buffer, &staging, tile.buffer.size());
+        self.arrive(&flight)?;
+        self.land(&staging, flight, &mut |bytes| layout.append(bytes, values))
+    }
+
     /// As few submissions as the limit on a dispatch allows.
     fn submit_all(&self, steps: &[&Step]) -> Result<()> {
         let Baker { device, queue, .. } = &self.baker;

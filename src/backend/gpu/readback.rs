@@ -1,7 +1,7 @@
 //! The headless bake: the same recording, in short submissions, read back while the next tile is
 //! computed.
 
-use crate::backend::gpu::baker::{Baker, EVALUATIONS_PER_DISPATCH, Layout, Tile};
+use crate::backend::gpu::baker::{Baker, EVALUATIONS_PER_DISPATCH, Layout};
 use crate::backend::gpu::device::Device;
 use crate::backend::gpu::dispatch::Dispatches;
 use crate::base::error::{Error, Result};
@@ -149,15 +149,6 @@ impl Device {
         slot.flight = Some((self.send(encoder, &slot.output, &slot.staging, bytes), left));
         times.dispatch += start.seconds();
         Ok(())
-    }
-
-    /// Reads a tile that was computed, and appends its values.
-    pub(crate) fn read_back(&self, tile: &Tile, layout: &Layout, values: &mut Values) -> Result<()> {
-        let staging = self.staging(tile.buffer.size());
-        let encoder = self.baker.device.create_command_encoder(&Default::default());
-        let flight = self.send(encoder, &tile.buffer, &staging, tile.buffer.size());
-        self.arrive(&flight)?;
-        self.land(&staging, flight, &mut |bytes| layout.append(bytes, values))
     }
 
     /// Submits what is recorded, and after it the copy of a result to where the host reads it.
