@@ -108,5 +108,6 @@ pub mod table;
 pub mod verify;
 
 pub use base::error::{Error, Result};
+#[cfg(feature = "check")]
 pub use gonio_reference as reference;
 pub use wgpu;
