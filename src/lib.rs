@@ -68,14 +68,23 @@
 //!
 //! # Features
 //!
-//! `scene` reads glTF and recipes, `files` writes tables, `cli` is the command and has both; it is the
-//! default. An embedder takes none of them: `default-features = false`.
+//! Without any feature (`default-features = false`) the crate bakes tables, on a device or the CPU, and nothing else:
+//! that is what an embedder takes, who has opened a `wgpu::Device` already. `Cargo.toml` says what each feature adds;
+//! `cli`, the default, is the command and has all of them.
+
+// Helpers that only another feature's room uses are dead in a build with some features. The builds with none and with
+// all are held to have no dead code.
+#![cfg_attr(
+    all(not(feature = "cli"), any(feature = "check", feature = "files")),
+    allow(dead_code, unused_imports)
+)]
 
 pub mod backend;
 pub mod bake;
 pub mod base;
-#[cfg(feature = "files")]
+#[cfg(feature = "batch")]
 pub mod batch;
+#[cfg(feature = "check")]
 pub mod check;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
@@ -85,15 +94,20 @@ mod figure;
 mod integrate;
 #[cfg(feature = "files")]
 pub mod io;
+#[cfg(feature = "lab")]
 pub mod lab;
+#[cfg(feature = "light")]
 pub mod light;
 pub mod model;
 pub mod plan;
+#[cfg(feature = "scene")]
 pub mod scene;
 pub mod shader;
 pub mod table;
+#[cfg(feature = "verify")]
 pub mod verify;
 
 pub use base::error::{Error, Result};
+#[cfg(feature = "check")]
 pub use gonio_reference as reference;
 pub use wgpu;

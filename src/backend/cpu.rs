@@ -1,6 +1,6 @@
 //! The CPU path: the same rules as the kernels, in f64, on all cores.
 
-#[cfg(feature = "files")]
+#[cfg(feature = "batch")]
 use crate::base::error::Error;
 use crate::integrate::evaluate;
 use crate::integrate::rule_set::{Work, WorkKind};
@@ -39,7 +39,7 @@ pub(crate) fn evaluate<E: Send>(
 
 /// The values of some rows of a table of values at a time (a row is all azimuths of an α and a pair):
 /// `sink` gets each of `tiles` in order.
-#[cfg(feature = "files")]
+#[cfg(feature = "batch")]
 pub(crate) fn stream(
     table: &TablePlan,
     tiles: &[std::ops::Range<usize>],

@@ -1,15 +1,19 @@
 //! Bakes tables: evaluate, look, cross-check.
 
+/// Compares with the reference where the feature `check` is on; without it the estimate is all that is known.
+#[cfg_attr(not(feature = "check"), path = "unmeasured.rs")]
+mod measured;
 pub mod points;
+
+pub use crate::table::Check;
 
 use crate::backend::cpu;
 use crate::backend::gpu::{Device, DeviceChoice};
 use crate::base::error::{Error, Result};
 use crate::base::precision::{Precision, STORED_F32, VALUE_F32};
+use crate::base::timings::Stopwatch;
 use crate::base::timings::Timings;
 use crate::base::tolerance::{CERTIFY_RATIO, ENERGY_SLACK, FINEST, KEPT_SHARE};
-use crate::check::bilinear;
-use crate::check::{Check, cross_check};
 use crate::integrate::scale::factor_error;
 use crate::model::compensation::Factor;
 use crate::model::lobe::Lobe;
@@ -18,7 +22,7 @@ use crate::table::quantity::Evaluation;
 use crate::table::rule::Rule;
 use crate::table::storage::{Storage, Stored};
 use crate::table::{Table, TableError, Values};
-use std::time::Instant;
+use measured::table_error;
 
 /// What evaluates tables.
 pub enum Evaluator {
@@ -73,9 +77,9 @@ impl Evaluator {
     ) -> Result<Table> {
         let computed = self.compute(plan, check, stages, observer)?;
         observer.begin(&format!("checking {}", plan.name()));
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let table = computed.check(plan, check, &|share| observer.advance(share));
-        stages.check += start.elapsed().as_secs_f64();
+        stages.check += start.seconds();
         table
     }
 
@@ -159,9 +163,8 @@ impl Computed {
             .store(values, plan.quantity().error)
             .map_err(|why| Error::Promise(format!("table {}: {why}", plan.name())))?;
         let rounding = plan.stored().coarse_rounding(plan.quantity().error);
-        let mut error = cross_check(plan, &values, check, estimate.map(|e| e + rounding), tick)?;
+        let mut error = table_error(plan, &values, check, estimate.map(|e| e + rounding), tick)?;
         error.underflows = (plan.storage() == Storage::F16).then_some(underflows);
-        error.interpolation = bilinear::measure(plan, &values, check)?;
         let table = origin.table(plan, values, error);
         table.check_sane()?;
         check_energy(plan, &table)?;
@@ -209,9 +212,9 @@ impl Path<'_> {
         match self {
             Self::Device(device, precision) => device.evaluate(plan, precision, stages, tick),
             Self::Cpu(_) => {
-                let start = Instant::now();
+                let start = Stopwatch::start();
                 let values = cpu::evaluate(plan, tick)?;
-                stages.dispatch += start.elapsed().as_secs_f64();
+                stages.dispatch += start.seconds();
                 Ok(Values::F64(values))
             }
         }

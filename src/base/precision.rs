@@ -35,5 +35,8 @@ pub const VALUE_F32: f64 = 40.0 / (1 << 24) as f64;
 /// The least tolerance of integrals that f32 meets: roundings of some hundred terms, measured at 5e-7.
 pub const INTEGRAL_F32: f64 = 1e-6;
 
+/// Relative errors of values are taken of max(f, this), in sr⁻¹: below it f32 runs out of exponent.
+pub const VALUE_FLOOR: f64 = 1e-30;
+
 /// The relative error of f64 values stored as f32.
 pub const STORED_F32: f64 = 1.0 / (1 << 24) as f64;

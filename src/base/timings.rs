@@ -1,6 +1,24 @@
 //! Where the time of a bake goes.
 
 use serde::Serialize;
+use std::time::Instant;
+
+/// Measures wall-clock time. All of the crate reads the clock through it, so a platform that has another clock (a
+/// browser) changes this file alone.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stopwatch(Instant);
+
+impl Stopwatch {
+    /// Starts now.
+    pub fn start() -> Self {
+        Self(Instant::now())
+    }
+
+    /// Seconds since the start.
+    pub fn seconds(self) -> f64 {
+        self.0.elapsed().as_secs_f64()
+    }
+}
 
 /// Where the time went, in seconds.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]

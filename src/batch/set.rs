@@ -2,6 +2,7 @@
 
 use crate::bake::{Evaluator, Observer, within_tolerance};
 use crate::base::error::{Error, Result};
+use crate::base::timings::Stopwatch;
 use crate::base::timings::Timings;
 use crate::batch::stream;
 use crate::batch::stream::{Progress, Streaming};
@@ -17,7 +18,6 @@ use std::collections::BTreeSet;
 use std::panic::resume_unwind;
 use std::path::Path;
 use std::thread::{self, ScopedJoinHandle};
-use std::time::Instant;
 
 /// What to write, and how much of it to check.
 #[derive(Debug, Clone, PartialEq)]
@@ -161,9 +161,9 @@ pub fn bake_set(
             let computed = computed?;
             observer.begin(&format!("checking {}", table.name()));
             let check = move || {
-                let start = Instant::now();
+                let start = Stopwatch::start();
                 let checked = computed.check(table, options.check, &|share| observer.advance(share));
-                (checked, start.elapsed().as_secs_f64())
+                (checked, start.seconds())
             };
             checking = Some(Checking { table, thread: scope.spawn(check) });
             if let Some((table, checked)) = before {
@@ -235,9 +235,9 @@ impl Finished<'_> {
 
     fn take(&mut self, plan: &TablePlan, table: Table, stages: &mut Timings) -> Result<()> {
         if self.is_met(plan, &table) {
-            let start = Instant::now();
+            let start = Stopwatch::start();
             self.written.push(self.set.write(&table, &self.options.formats, self.provenance)?);
-            stages.write += start.elapsed().as_secs_f64();
+            stages.write += start.seconds();
         }
         self.tables.push(table);
         Ok(())
@@ -254,11 +254,11 @@ impl Finished<'_> {
     ) -> Result<()> {
         if self.is_met(plan, &table) {
             observer.begin(&format!("writing {}", table.name));
-            let start = Instant::now();
+            let start = Stopwatch::start();
             let (formats, tick) = (&self.options.formats, &mut |share| observer.advance(share));
             let written = self.set.write_streamed(&table, tiles, preview, formats, self.provenance, tick)?;
             self.written.push(written);
-            stages.write += start.elapsed().as_secs_f64();
+            stages.write += start.seconds();
         }
         self.tables.push(table);
         Ok(())

@@ -8,45 +8,11 @@ use crate::model::lobe::Lobe;
 use crate::plan::TablePlan;
 use crate::table::axis::{Axis, Variable};
 use crate::table::quantity::Evaluation;
-use crate::table::{ErrorKind, TableError, Values, indices};
+use crate::table::{Check, TableError, Values, indices};
 use gonio_reference::Angles;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
-
-/// How many texels of a table to compare.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Check {
-    /// The corners and a low-discrepancy set: at least so many, or all if there are fewer; 0: none.
-    Sample(usize),
-    /// Every one.
-    All,
-}
-
-impl Default for Check {
-    fn default() -> Self {
-        Self::Sample(256)
-    }
-}
-
-impl std::str::FromStr for Check {
-    type Err = String;
-
-    fn from_str(s: &str) -> Result<Self, Self::Err> {
-        match s {
-            "all" => Ok(Self::All),
-            _ => s.parse().map(Self::Sample).map_err(|_| format!("\"{s}\" is neither a count nor all")),
-        }
-    }
-}
-
-/// Relative errors of values are taken of max(f, this), in sr⁻¹: below it f32 runs out of exponent.
-pub const VALUE_FLOOR: f64 = 1e-30;
-
-/// The same of a sum of lobes, some of which may lose their digits earlier.
-pub(crate) fn value_floor(lobes: &[Lobe]) -> f64 {
-    lobes.iter().filter_map(|lobe| lobe.model().faint()).fold(VALUE_FLOOR, f64::max)
-}
 
 /// Compares `values` with the reference. A NaN anywhere makes the largest error infinite.
 ///
@@ -80,9 +46,7 @@ impl<'a> Comparison<'a> {
             Check::All => None,
             Check::Sample(n) => Some(sample(&table.shape(), n)),
         };
-        let kind = table.quantity().error;
-        let floor = (kind == ErrorKind::Relative).then(|| value_floor(table.lobes()));
-        let tally = Tally::new(TableError::unmeasured(kind, floor, estimate));
+        let tally = Tally::new(table.unmeasured(estimate));
         Self { table, sample, tally }
     }
 

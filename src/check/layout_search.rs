@@ -340,21 +340,3 @@ impl<'a> Search<'a> {
 const COARSE: usize = 8;
 /// The device's own error, a tenth of the tolerance at most by the rule but 1e-6 in truth, has its room.
 const CONFIRMED: f64 = 0.995;
-
-impl std::fmt::Display for Choice {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "chosen {}", self.chosen)?;
-        if let Some(next) = &self.runner_up {
-            write!(f, "; next best {next}")?;
-        }
-        let share = self.chosen.bytes as f64 / self.usual_bytes as f64;
-        write!(f, "; {:.0} % of the {} bytes of 128 centres in f16", 100.0 * share, self.usual_bytes)
-    }
-}
-
-impl std::fmt::Display for Layout {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { storage, bytes, error, .. } = self;
-        write!(f, "{} in {}, {bytes} bytes, {error:.2e} bilinear", self.axes.join(" × "), storage.name())
-    }
-}

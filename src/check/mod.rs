@@ -3,12 +3,15 @@
 pub(crate) mod bilinear;
 mod cross_check;
 mod factor;
+#[cfg(feature = "scene")]
 pub(crate) mod layout_search;
 mod reference;
 
-#[cfg(feature = "files")]
+pub use crate::base::precision::VALUE_FLOOR;
+pub use crate::table::Check;
+#[cfg(feature = "batch")]
 pub(crate) use cross_check::Comparison;
-pub use cross_check::{Check, VALUE_FLOOR, cross_check, reference};
 pub(crate) use cross_check::{Tally, sample};
+pub use cross_check::{cross_check, reference};
 pub(crate) use reference::{Fixed, ReferenceLobe, reference_angles, reference_parameters};
 pub use reference::{reference_of_model, register_reference};

@@ -3,6 +3,7 @@
 use crate::backend::gpu::DeviceChoice;
 use crate::bake::Evaluator;
 use crate::base::error::{Error, Result};
+use crate::base::timings::Stopwatch;
 use crate::base::timings::Timings;
 use crate::batch::{Baked, Options, Streaming, bake_set};
 use crate::check::Check;
@@ -14,7 +15,6 @@ use crate::scene::planner::{Plan, Selection};
 use serde_json::json;
 use std::mem::ManuallyDrop;
 use std::path::PathBuf;
-use std::time::Instant;
 
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
@@ -83,7 +83,7 @@ pub(super) fn tolerance(text: &str) -> Result<f64, String> {
 }
 
 pub fn run(args: &Args) -> Result<()> {
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let scene = scene::read(&args.scene)?;
     let selection = Selection {
         material: args.material.clone(),
@@ -91,7 +91,7 @@ pub fn run(args: &Args) -> Result<()> {
         tolerance: args.tolerance,
     };
     let plan = Plan::new(&scene, &selection)?;
-    let mut stages = Timings { scene: start.elapsed().as_secs_f64(), ..Timings::default() };
+    let mut stages = Timings { scene: start.seconds(), ..Timings::default() };
     let say = Say { json: args.json };
 
     if args.dry_run {
@@ -104,11 +104,11 @@ pub fn run(args: &Args) -> Result<()> {
     let Some(out) = &args.out else { return Err(Error::input("give --out DIR")) };
     plan.warnings.iter().for_each(|w| warn(w));
 
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let (evaluator, line) = Evaluator::choose(&args.device)?;
     // The process ends with the bake: drivers would take some 20 ms to take apart what the system frees at once.
     let evaluator = ManuallyDrop::new(evaluator);
-    stages.device = start.elapsed().as_secs_f64();
+    stages.device = start.seconds();
     say.line(&format!("{HEADING}device{HEADING:#}  {line}"))?;
 
     let watch = Watch::new(2 * plan.tables.len());

@@ -6,6 +6,7 @@ mod targets;
 use crate::backend::gpu::{Device, DeviceChoice, INSTALL};
 use crate::bake::Evaluator;
 use crate::base::error::{Error, Result};
+use crate::base::timings::Stopwatch;
 use crate::cli::watch::Watch;
 use crate::cli::{HEADING, device_json, junit, print_beside, print_json, warn};
 use crate::scene;
@@ -15,7 +16,6 @@ use crate::verify::{Finding, Input, Options, Parameter, Report, STEPS, Symmetry,
 use anstyle::{AnsiColor, Style};
 use serde_json::json;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 use targets::Target;
 pub(super) use targets::quoted;
 
@@ -121,9 +121,9 @@ fn own(args: &Args, targets: Vec<Target>, evaluator: &Evaluator, line: &str) -> 
     let watch = Watch::new(STEPS * targets.len());
     let mut all = Vec::new();
     for (k, Target { mut subject, command }) in targets.into_iter().enumerate() {
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let report = verify::check(&mut subject, &args.options(), &watch)?;
-        let seconds = start.elapsed().as_secs_f64();
+        let seconds = start.seconds();
         let has_values = |finding: &Finding| !finding.values.is_empty();
         let eval = |f: &Finding| Some(format!("{command} {}", f.input.as_ref().filter(|_| has_values(f))?));
         let inputs = report.findings.iter().map(eval).collect();
@@ -186,12 +186,12 @@ fn shader(args: &Args, path: &Path, entry: &str) -> Result<()> {
     let symmetry = Symmetry { isotropic: !args.anisotropic, bilateral: !args.anisotropic };
     let mut subject = UserShader::new(&device, function, parameters, args.cosine, symmetry)?;
 
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let watch = Watch::new(STEPS);
     let report = verify::check(&mut subject, &args.options(), &watch);
     watch.finish();
     let report = report?;
-    let seconds = start.elapsed().as_secs_f64();
+    let seconds = start.seconds();
     let vectors = |input: &Input| directions(&input.angles, args.cosine);
     let words = |input: &Input| {
         let [wi, wo] = vectors(input).map(|[x, y, z]| format!("({x:?}, {y:?}, {z:?})"));

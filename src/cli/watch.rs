@@ -2,15 +2,15 @@
 
 use crate::bake::Observer;
 use crate::base::error::{Error, Result};
+use crate::base::timings::Stopwatch;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
 
 /// A bar that appears after a second, on a terminal only, and a stop on Ctrl-C.
 pub struct Watch {
     bar: ProgressBar,
-    start: Instant,
+    start: Stopwatch,
     step: Mutex<Step>,
     stop: Arc<AtomicBool>,
 }
@@ -23,7 +23,8 @@ struct Step {
 
 /// The bar's resolution within a step.
 const TICKS: u64 = 100;
-const PATIENCE: Duration = Duration::from_secs(1);
+/// Seconds after which the bar appears.
+const PATIENCE: f64 = 1.0;
 
 impl Watch {
     /// Watches so many steps.
@@ -36,7 +37,7 @@ impl Watch {
         if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}  {elapsed}") {
             bar.set_style(style);
         }
-        Self { bar, start: Instant::now(), step: Mutex::new(Step { count: 0, share: 0.0 }), stop }
+        Self { bar, start: Stopwatch::start(), step: Mutex::new(Step { count: 0, share: 0.0 }), stop }
     }
 
     /// Prints with the bar out of the way.
@@ -63,7 +64,7 @@ impl Observer for Watch {
             self.bar.finish_and_clear();
             return Err(Error::Interrupted);
         }
-        if self.bar.is_hidden() && self.start.elapsed() > PATIENCE {
+        if self.bar.is_hidden() && self.start.seconds() > PATIENCE {
             // indicatif draws on a terminal only.
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
         }

@@ -149,6 +149,7 @@ impl Work {
 
     /// Evaluations of the integrand, or of values, for the whole table. What a texel takes beside them, some
     /// dozens of products of the outer matrices, does not count.
+    #[cfg(feature = "lab")]
     pub fn evaluations(&self) -> u64 {
         let rows = self.alphas.len();
         let count = match &self.kind {

@@ -93,6 +93,7 @@ impl SlopeWork {
     }
 
     /// Evaluations of the integrand for so many rows of α.
+    #[cfg(feature = "lab")]
     pub fn evaluations(&self, rows: usize) -> usize {
         let groups = self.mus.len().div_ceil(TILE_COLUMNS);
         let share = |first: usize, of: usize, all: usize| of.min(all - first * of);

@@ -303,6 +303,7 @@ impl Model {
     }
 
     /// The same in R, G or B: a parameter called `channel` is the channel's number.
+    #[cfg(feature = "scene")]
     pub(crate) fn defaults_in(&self, channel: usize) -> Parameters {
         let mut parameters = self.defaults();
         let own = self.parameters.iter().filter(|parameter| parameter.name == "channel");

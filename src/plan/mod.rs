@@ -1,6 +1,8 @@
 //! The plan: which tables, over which axes, by which rule. Pure data: printable, comparable,
 //! testable without a device.
 
+mod unmeasured;
+
 use crate::base::error::{Error, Result};
 use crate::base::precision::{INTEGRAL_F32, Precision, VALUE_F32};
 use crate::base::tolerance::{RULE_SHARE, Tolerance, UNORM_RULE};
@@ -382,10 +384,12 @@ impl TablePlan {
         if swept && !self.lobes.iter().any(|lobe| lobe.model().shape.is_some()) {
             return refuse(format!("{} has no roughness to be an axis", self.subject));
         }
-        // Counts multiply beyond any usize.
-        let values = self.axes.iter().try_fold(self.channels.len(), |n, axis| n.checked_mul(axis.len()));
+        // Counts multiply beyond any integer.
+        let count = |n: u64, axis: &Axis| n.checked_mul(axis.len() as u64);
+        let values = self.axes.iter().try_fold(self.channels.len() as u64, count);
         let streams = self.can_stream();
-        let most = if streams { MAX_STREAMED } else { MAX_VALUES };
+        // Texels are indexed by usize, which has 32 bits on some targets.
+        let most = if streams { MAX_STREAMED.min(usize::MAX as u64) } else { MAX_VALUES };
         if values.is_none_or(|n| n > most) {
             let value = self.quantity.evaluation == Evaluation::Value;
             let more = match value && !streams {
@@ -517,7 +521,7 @@ impl TablePlan {
 
     /// Refuses what is too large for one piece.
     pub(crate) fn check_fits_memory(&self) -> Result<()> {
-        if self.texels() * self.channels.len() <= MAX_VALUES {
+        if self.texels() as u64 * self.channels.len() as u64 <= MAX_VALUES {
             return Ok(());
         }
         Err(Error::input(format!(
@@ -571,11 +575,11 @@ impl TablePlan {
 }
 
 /// The most values of a table in one piece: 1 GiB in f32, and 2 more in f64.
-const MAX_VALUES: usize = 1 << 28;
+const MAX_VALUES: u64 = 1 << 28;
 
 /// The most values of a table that streams, so need not fit memory: 32 GiB as stored, and the device
 /// counts its quads in 32 bits.
-const MAX_STREAMED: usize = 1 << 33;
+const MAX_STREAMED: u64 = 1 << 33;
 
 /// The most factors of a table: 32 bytes each in the 128 MiB that every device binds.
 const MAX_FACTORS: usize = 1 << 22;

@@ -3,17 +3,14 @@
 
 mod distribution;
 mod formula;
-#[cfg(feature = "scene")]
 mod gltf;
 mod metallic_roughness;
 pub mod planner;
-#[cfg(feature = "scene")]
 mod recipe;
 mod varying;
 
 pub use distribution::Distribution;
 pub use formula::{Formula, Input};
-#[cfg(feature = "scene")]
 pub use recipe::parse as parse_recipe;
 
 use crate::base::error::{Error, Result};
@@ -23,9 +20,7 @@ use crate::model::compensation::{Compensation, Factor};
 use crate::table::axis::{Axis, Variable};
 use crate::table::rule::Rule;
 use crate::table::storage::Storage;
-#[cfg(feature = "scene")]
-use std::path::Path;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Everything that a scene file or recipe says about reflection.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -158,7 +153,6 @@ pub enum SubjectRequest {
 ///
 /// # Errors
 /// When the file cannot be read or is not what its name says.
-#[cfg(feature = "scene")]
 pub fn read(path: &Path) -> Result<Scene> {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_lowercase();
     match extension.as_str() {

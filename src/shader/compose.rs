@@ -43,12 +43,16 @@ pub enum Kernel {
     /// Texels of a texture.
     Pack,
     /// Irradiance of an environment map.
+    #[cfg(feature = "light")]
     Irradiance,
     /// Nine spherical-harmonic coefficients of an environment map.
+    #[cfg(feature = "light")]
     Harmonics,
     /// Nothing but stores.
+    #[cfg(feature = "lab")]
     Fill,
     /// Nothing but arithmetic.
+    #[cfg(feature = "lab")]
     MultiplyAdd,
     /// What the driver does.
     Canary,
@@ -148,9 +152,13 @@ impl Kernel {
             (Self::Analytic, _) => &[part!("kernel/analytic")],
             (Self::Sum | Self::AddSum, _) => &[part!("kernel/sum")],
             (Self::Pack, _) => &[part!("kernel/pack")],
+            #[cfg(feature = "lab")]
             (Self::Fill, _) => &[part!("probe/fill")],
+            #[cfg(feature = "lab")]
             (Self::MultiplyAdd, _) => &[part!("probe/multiply_add")],
+            #[cfg(feature = "light")]
             (Self::Irradiance, _) => &[part!("light/irradiance")],
+            #[cfg(feature = "light")]
             (Self::Harmonics, _) => &[part!("light/harmonics")],
             (Self::Canary, _) => &[part!("probe/canary")],
         }
@@ -162,7 +170,13 @@ impl Kernel {
 
     /// Whether it knows no job, model or precision: its file is all of it.
     fn is_plain(self) -> bool {
-        use Kernel::{Canary, Fill, Harmonics, Irradiance, MultiplyAdd, Pack};
-        matches!(self, Irradiance | Harmonics | Pack | Fill | MultiplyAdd | Canary)
+        match self {
+            Self::Pack | Self::Canary => true,
+            #[cfg(feature = "light")]
+            Self::Irradiance | Self::Harmonics => true,
+            #[cfg(feature = "lab")]
+            Self::Fill | Self::MultiplyAdd => true,
+            _ => false,
+        }
     }
 }

@@ -1,10 +1,13 @@
 //! The table: values, axes, provenance and error. The one currency between all parts.
 
 pub mod axis;
+mod check;
 pub mod quantity;
 pub mod report;
 pub mod rule;
 pub mod storage;
+
+pub use check::Check;
 
 use crate::base::error::{Error, Result};
 use crate::table::axis::Axis;
@@ -137,7 +140,7 @@ impl Values {
     }
 
     /// Drops them and keeps their room.
-    #[cfg(feature = "files")]
+    #[cfg(feature = "batch")]
     pub(crate) fn clear(&mut self) {
         match self {
             Self::F32(values) => values.clear(),

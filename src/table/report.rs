@@ -3,6 +3,7 @@
 use super::storage::Storage;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::fmt;
 
 /// The error of bilinear look-ups, absolute.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -47,4 +48,22 @@ pub struct Layout {
     pub bytes: usize,
     /// The largest error of bilinear look-ups where the promise holds, by the plan's own arithmetic.
     pub error: f64,
+}
+
+impl fmt::Display for Choice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "chosen {}", self.chosen)?;
+        if let Some(next) = &self.runner_up {
+            write!(f, "; next best {next}")?;
+        }
+        let share = self.chosen.bytes as f64 / self.usual_bytes as f64;
+        write!(f, "; {:.0} % of the {} bytes of 128 centres in f16", 100.0 * share, self.usual_bytes)
+    }
+}
+
+impl fmt::Display for Layout {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { storage, bytes, error, .. } = self;
+        write!(f, "{} in {}, {bytes} bytes, {error:.2e} bilinear", self.axes.join(" × "), storage.name())
+    }
 }

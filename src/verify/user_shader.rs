@@ -7,12 +7,13 @@ use crate::backend::gpu::device::Device;
 use crate::base::angles::Angles;
 use crate::base::error::{Error, Result};
 use crate::base::half_angle::MU_MIN;
+use crate::base::timings::Stopwatch;
 use crate::verify::{Parameter, Subject, Symmetry};
 use naga::valid::{Capabilities, ModuleInfo, ShaderStages, ValidationFlags, Validator};
 use naga::{Block, Function, Module, ScalarKind, Statement, TypeInner, VectorSize};
 use rayon::prelude::*;
 use std::sync::mpsc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A function of a WGSL file that fits.
 #[derive(Debug, Clone)]
@@ -264,9 +265,9 @@ const WORKGROUP: usize = 64;
 /// Pairs in a dispatch: at first, and at most.
 const BATCH: usize = 1 << 10;
 const LARGEST_BATCH: usize = 1 << 17;
-/// Dispatches longer than this are halved, shorter than a quarter doubled: well below the 2 s after which
+/// Dispatches longer than this, s, are halved, shorter than a quarter doubled: well below the 2 s after which
 /// drivers lose patience.
-const LONG: Duration = Duration::from_millis(80);
+const LONG: f64 = 0.08;
 /// A shader that takes longer for one dispatch does not end.
 const PATIENCE: Duration = Duration::from_secs(60);
 /// What values hold before they are computed: a NaN that no arithmetic makes.
@@ -384,7 +385,7 @@ impl<'a> UserShader<'a> {
             pass.dispatch_workgroups(angles.len().div_ceil(WORKGROUP) as u32, 1, 1);
         }
         encoder.copy_buffer_to_buffer(&self.values, 0, &self.staging, 0, bytes);
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let submission = queue.submit([encoder.finish()]);
         let (sender, mapped) = mpsc::channel();
         self.staging.map_async(wgpu::MapMode::Read, ..bytes, move |result| {
@@ -421,10 +422,10 @@ impl<'a> UserShader<'a> {
                 values.iter_mut().for_each(|value| *value /= pair[0][2]);
             }
         }
-        let time = start.elapsed();
-        if time > LONG {
+        let seconds = start.seconds();
+        if seconds > LONG {
             self.batch = (self.batch / 2).max(WORKGROUP);
-        } else if time < LONG / 4 && angles.len() == self.batch {
+        } else if seconds < LONG / 4.0 && angles.len() == self.batch {
             self.batch = (self.batch * 2).min(LARGEST_BATCH);
         }
         Ok(())

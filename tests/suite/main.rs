@@ -33,6 +33,7 @@ mod parts;
 mod plans;
 #[cfg(feature = "cli")]
 mod plot;
+mod portable;
 mod radiometry;
 #[cfg(feature = "scene")]
 mod scenes;

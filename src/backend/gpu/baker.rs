@@ -5,6 +5,7 @@ use crate::backend::gpu::loop_limit;
 use crate::backend::gpu::loop_limit::SAFE_TURNS;
 use crate::base::error::{Error, Result};
 use crate::base::precision::Precision;
+use crate::base::timings::Stopwatch;
 use crate::integrate::direction_rule::MappedWork;
 use crate::integrate::rule_set::Work;
 use crate::integrate::slope_rule::TILE_ALPHAS;
@@ -18,7 +19,6 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
-use std::time::Instant;
 
 /// Bakes tables on a device.
 ///
@@ -393,9 +393,9 @@ impl Baker {
             return Ok(pipeline.clone());
         }
         let label = format!("gonio {kernel:?} {}", key.1.unwrap_or_default());
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let composed = validate(&compose(kernel, model, channels, precision), precision)?;
-        *self.composing.lock().unwrap_or_else(PoisonError::into_inner) += start.elapsed().as_secs_f64();
+        *self.composing.lock().unwrap_or_else(PoisonError::into_inner) += start.seconds();
         let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(&label),
             source: wgpu::ShaderSource::Naga(Cow::Owned(composed)),

@@ -4,10 +4,10 @@ use crate::backend::gpu::baker::{Baker, EVALUATIONS_PER_DISPATCH, Layout, Step, 
 use crate::backend::gpu::device::Device;
 use crate::base::error::{Error, Result};
 use crate::base::precision::Precision;
+use crate::base::timings::Stopwatch;
 use crate::plan::TablePlan;
 use crate::shader::Kernel;
 use crate::table::Values;
-use std::time::Instant;
 
 /// A table that is ready to be baked again and again: pipelines are compiled and buffers touched.
 pub(crate) struct Warm<'a> {
@@ -31,9 +31,9 @@ impl Warm<'_> {
     /// Bakes once, and returns the seconds from the first submission to the end of the last.
     pub fn run(&self) -> Result<f64> {
         let steps: Vec<_> = self.tiles.iter().flat_map(|tile| &tile.steps).collect();
-        let start = Instant::now();
+        let start = Stopwatch::start();
         self.device.submit_all(&steps)?;
-        Ok(start.elapsed().as_secs_f64())
+        Ok(start.seconds())
     }
 
     /// The values of the last run.
@@ -57,11 +57,20 @@ impl Device {
             Ok((layout, tiles))
         };
         drop(prepare()?); // compiles
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let (layout, tiles) = prepare()?;
-        let warm = Warm { device: self, layout, tiles, prepare: start.elapsed().as_secs_f64() };
+        let warm = Warm { device: self, layout, tiles, prepare: start.seconds() };
         warm.run()?;
         Ok(warm)
+    }
+
+    /// Reads a tile that was computed, and appends its values.
+    fn read_back(&self, tile: &Tile, layout: &Layout, values: &mut Values) -> Result<()> {
+        let staging = self.staging(tile.buffer.size());
+        let encoder = self.baker.device.create_command_encoder(&Default::default());
+        let flight = self.send(encoder, &tile.buffer, &staging, tile.buffer.size());
+        self.arrive(&flight)?;
+        self.land(&staging, flight, &mut |bytes| layout.append(bytes, values))
     }
 
     /// As few submissions as the limit on a dispatch allows.
@@ -107,7 +116,7 @@ impl Device {
         let bind_group = self.baker.bind(&pipeline, [buffer.as_entire_binding()]);
         let mut least = f64::INFINITY;
         for run in 0..=RUNS {
-            let start = Instant::now();
+            let start = Stopwatch::start();
             let mut encoder = device.create_command_encoder(&Default::default());
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             pass.set_pipeline(&pipeline);
@@ -118,7 +127,7 @@ impl Device {
             self.wait()?;
             // The first run touches the buffer.
             if run > 0 {
-                least = least.min(start.elapsed().as_secs_f64());
+                least = least.min(start.seconds());
             }
         }
         if least > 0.0 {

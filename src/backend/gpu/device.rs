@@ -51,7 +51,7 @@ pub struct Device {
 enum Owner {
     /// gonio: its handlers keep the first error here.
     Gonio {
-        #[cfg_attr(not(feature = "files"), allow(dead_code))]
+        #[cfg_attr(not(feature = "batch"), allow(dead_code))]
         adapter: Adapter,
         fault: Arc<Mutex<Option<String>>>,
     },
@@ -59,8 +59,11 @@ enum Owner {
     Caller,
 }
 
-/// All adapters that could bake, the best first.
+/// All adapters that could bake, the best first; none in a build without any back end of wgpu.
 pub fn adapters() -> Vec<Adapter> {
+    if wgpu::Instance::enabled_backend_features().is_empty() {
+        return Vec::new();
+    }
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: wgpu::Backends::PRIMARY,
         // No dispatch here is indirect: a device need not compile what would look after those.
@@ -227,7 +230,7 @@ impl Device {
     }
 
     /// A new device on the same adapter, after this one was lost.
-    #[cfg(feature = "files")]
+    #[cfg(feature = "batch")]
     pub(crate) fn reopen(&self) -> Result<Self> {
         match &self.owner {
             Owner::Gonio { adapter, .. } => adapter.open(),

@@ -4,6 +4,7 @@
 //! headless bake is the same recording, split into submissions and read back.
 
 pub(crate) mod baker;
+#[cfg(feature = "lab")]
 mod benchmark;
 pub(crate) mod device;
 pub(crate) mod dispatch;
@@ -14,6 +15,7 @@ pub(crate) mod readback;
 mod texture;
 
 pub use baker::{Baker, Prepared, Recorded};
+#[cfg(feature = "lab")]
 pub(crate) use benchmark::{Rates, Warm};
 pub use device::{Adapter, Device, DeviceChoice, INSTALL, adapters};
 pub use driver_probe::{ASKED_TURNS, Canary};

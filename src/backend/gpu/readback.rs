@@ -1,17 +1,17 @@
 //! The headless bake: the same recording, in short submissions, read back while the next tile is
 //! computed.
 
-use crate::backend::gpu::baker::{Baker, EVALUATIONS_PER_DISPATCH, Layout, Tile};
+use crate::backend::gpu::baker::{Baker, EVALUATIONS_PER_DISPATCH, Layout};
 use crate::backend::gpu::device::Device;
 use crate::backend::gpu::dispatch::Dispatches;
 use crate::base::error::{Error, Result};
 use crate::base::precision::Precision;
+use crate::base::timings::Stopwatch;
 use crate::base::timings::Timings;
 use crate::plan::TablePlan;
 use crate::table::Values;
 use std::ops::Range;
 use std::sync::mpsc::{self, Receiver};
-use std::time::Instant;
 
 /// What the device does in one submission, after which a bake can be stopped: as much as one dispatch may.
 const EVALUATIONS_PER_SUBMISSION: u64 = EVALUATIONS_PER_DISPATCH as u64;
@@ -50,7 +50,7 @@ impl Device {
 
     /// The values of some rows of a table of values at a time, in f32 (a row is all azimuths of an α and a
     /// pair): `sink` gets each of `tiles` in order, while the device computes the next.
-    #[cfg(feature = "files")]
+    #[cfg(feature = "batch")]
     pub(crate) fn stream(
         &self,
         table: &TablePlan,
@@ -80,13 +80,13 @@ impl Device {
         values: &mut Values,
         sink: &mut dyn FnMut(usize, &mut Values) -> Result<()>,
     ) -> Result<()> {
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let composed = self.baker.compose_seconds();
         let stages = self.baker.stages(table, layout.precision, || self.known_turns())?;
         let tiles = tiles.map_or_else(|| layout.tiles(&stages), <[_]>::to_vec);
         let largest = layout.bytes(tiles.iter().map(Range::len).max().unwrap_or(0));
         let mut slots: Vec<_> = tiles.iter().take(2).map(|_| self.slot(largest)).collect();
-        times.compile += start.elapsed().as_secs_f64();
+        times.compile += start.seconds();
 
         for k in 0..=tiles.len() {
             if let Some(units) = tiles.get(k) {
@@ -97,12 +97,12 @@ impl Device {
             if let Some((last, Slot { staging, flight, .. })) = landing
                 && let Some((flight, share)) = flight.take()
             {
-                let start = Instant::now();
+                let start = Stopwatch::start();
                 self.arrive(&flight)?;
-                times.dispatch += start.elapsed().as_secs_f64();
-                let start = Instant::now();
+                times.dispatch += start.seconds();
+                let start = Stopwatch::start();
                 self.land(staging, flight, &mut |bytes| layout.append(bytes, values))?;
-                times.readback += start.elapsed().as_secs_f64();
+                times.readback += start.seconds();
                 sink(last, values)?;
                 tick(share)?;
             }
@@ -126,10 +126,10 @@ impl Device {
         tick: &impl Fn(f64) -> Result<()>,
     ) -> Result<()> {
         let Baker { device, queue, .. } = &self.baker;
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let steps = self.baker.fill(&slot.output, stages, units.clone())?;
-        times.compile += start.elapsed().as_secs_f64();
-        let start = Instant::now();
+        times.compile += start.seconds();
+        let start = Stopwatch::start();
         let all: u64 = steps.iter().map(|step| step.evaluations).sum();
         let part = |evaluations: u64| share * evaluations as f64 / all.max(1) as f64;
         let mut encoder = device.create_command_encoder(&Default::default());
@@ -148,17 +148,8 @@ impl Device {
         }
         let bytes = layout.bytes(units.len()) as u64;
         slot.flight = Some((self.send(encoder, &slot.output, &slot.staging, bytes), left));
-        times.dispatch += start.elapsed().as_secs_f64();
+        times.dispatch += start.seconds();
         Ok(())
-    }
-
-    /// Reads a tile that was computed, and appends its values.
-    pub(crate) fn read_back(&self, tile: &Tile, layout: &Layout, values: &mut Values) -> Result<()> {
-        let staging = self.staging(tile.buffer.size());
-        let encoder = self.baker.device.create_command_encoder(&Default::default());
-        let flight = self.send(encoder, &tile.buffer, &staging, tile.buffer.size());
-        self.arrive(&flight)?;
-        self.land(&staging, flight, &mut |bytes| layout.append(bytes, values))
     }
 
     /// Submits what is recorded, and after it the copy of a result to where the host reads it.

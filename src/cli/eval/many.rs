@@ -4,13 +4,13 @@ use crate::bake::points::Points;
 use crate::bake::{Evaluator, Observer};
 use crate::base::angles::Angles;
 use crate::base::error::{Error, Result};
+use crate::base::timings::Stopwatch;
 use crate::cli::eval::{Args, is_sane, subject};
 use crate::cli::watch::Watch;
 use crate::cli::{HEADING, print, print_json};
 use crate::io::{List, Pairs};
 use serde_json::json;
 use std::path::Path;
-use std::time::Instant;
 
 /// Pairs read, evaluated and written at a time: 32 MiB of angles.
 const PIECE: usize = 1 << 20;
@@ -36,7 +36,7 @@ pub fn run(args: &Args, pairs: &Path, out: &Path) -> Result<()> {
     let (mut angles, mut values) = (Vec::new(), Vec::new());
     let mut seconds = Seconds::default();
     let (mut done, mut insane, mut first) = (0u64, 0u64, None);
-    let start = Instant::now();
+    let start = Stopwatch::start();
     loop {
         Seconds::add(&mut seconds.read, || list.next(PIECE, &mut angles))?;
         if angles.is_empty() {
@@ -55,7 +55,7 @@ pub fn run(args: &Args, pairs: &Path, out: &Path) -> Result<()> {
     }
     Seconds::add(&mut seconds.write, || values_file.finish())?;
     watch.finish();
-    let all = start.elapsed().as_secs_f64();
+    let all = start.seconds();
 
     let precision = if matches!(evaluator, Evaluator::Cpu) { "f64" } else { "f32" };
     if args.json {
@@ -95,9 +95,9 @@ struct Seconds {
 
 impl Seconds {
     fn add<T>(to: &mut f64, work: impl FnOnce() -> T) -> T {
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let result = work();
-        *to += start.elapsed().as_secs_f64();
+        *to += start.seconds();
         result
     }
 }

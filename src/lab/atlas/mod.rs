@@ -16,10 +16,8 @@
 mod band;
 mod directions;
 mod map;
-#[cfg(feature = "files")]
 pub(crate) mod picture;
 mod study;
-#[cfg(feature = "files")]
 mod write;
 
 pub use band::{Band, Worst};
@@ -27,7 +25,6 @@ pub use map::Map;
 #[cfg(feature = "cli")]
 pub(crate) use study::STEPS;
 pub use study::{OWN, ROUNDED, study};
-#[cfg(feature = "files")]
 pub use write::{to_json, write};
 
 use crate::bake::points::Points;

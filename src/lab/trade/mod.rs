@@ -5,22 +5,20 @@ mod candidates;
 mod costs;
 mod floor;
 mod front;
-#[cfg(feature = "files")]
 mod picture;
 mod subset;
 mod timing;
-#[cfg(feature = "files")]
 mod write;
 
 pub use costs::{Cost, costs};
 pub use floor::Floor;
 pub use front::front;
-#[cfg(feature = "files")]
 pub use write::write;
 
 use crate::bake::{Evaluator, Observer};
 use crate::base::error::{Error, Result};
 use crate::base::precision::Precision;
+use crate::base::timings::Stopwatch;
 use crate::check;
 use crate::plan::TablePlan;
 use crate::table::quantity::Evaluation;
@@ -30,7 +28,6 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::HashMap;
 use std::fmt;
-use std::time::Instant;
 use subset::Subset;
 use timing::{Timing, median, rounds, time};
 
@@ -163,11 +160,11 @@ pub fn measure(
         Evaluator::Device(device) => Some(device.rates()?),
         Evaluator::Cpu => None,
     };
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let mut points = Vec::new();
     for candidate in candidates {
         observer.begin(&format!("{} {}", candidate.method, candidate.setting));
-        let in_budget = || start.elapsed().as_secs_f64() < options.budget;
+        let in_budget = || start.seconds() < options.budget;
         let precision = match evaluator {
             Evaluator::Device(device) if candidate.precision == Precision::F64 && !device.has_f64() => {
                 left_out.push(format!("{} {}: the device has no f64", candidate.method, candidate.setting));

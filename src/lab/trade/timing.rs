@@ -5,11 +5,11 @@ use crate::backend::gpu;
 use crate::bake::Evaluator;
 use crate::base::error::{Error, Result};
 use crate::base::precision::Precision;
+use crate::base::timings::Stopwatch;
 use crate::integrate::rule_set::Work;
 use crate::plan::TablePlan;
 use crate::table::storage::{Storage, Stored};
 use crate::table::{ErrorKind, Values};
-use std::time::Instant;
 
 /// A table, and the time that it took.
 pub(super) struct Timing {
@@ -103,9 +103,9 @@ impl<'a> Warm<'a> {
         Ok(match evaluator {
             Evaluator::Device(device) => Self::Device(device.warm(plan, precision)?),
             Evaluator::Cpu => {
-                let start = Instant::now();
+                let start = Stopwatch::start();
                 plan.lobes().iter().for_each(|lobe| drop(Work::new(plan, lobe)));
-                Self::Cpu { plan, prepare: start.elapsed().as_secs_f64() }
+                Self::Cpu { plan, prepare: start.seconds() }
             }
         })
     }
@@ -115,9 +115,9 @@ impl<'a> Warm<'a> {
         match self {
             Self::Device(warm) => warm.run(),
             Self::Cpu { plan, .. } => {
-                let start = Instant::now();
+                let start = Stopwatch::start();
                 cpu::evaluate(plan, &|_| Ok::<_, Error>(()))?;
-                Ok(start.elapsed().as_secs_f64())
+                Ok(start.seconds())
             }
         }
     }

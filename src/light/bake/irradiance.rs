@@ -1,6 +1,7 @@
 //! Irradiance over normals.
 
 use crate::base::error::Result;
+use crate::base::timings::Stopwatch;
 use crate::base::timings::Timings;
 use crate::light::bake::{
     FLOOR, IRRADIANCE, Order, Truths, Values, largest, normals, reference_frames, timed,
@@ -10,7 +11,6 @@ use crate::light::{Environment, Light};
 use crate::table::Table;
 use crate::table::axis::Axis;
 use gonio_reference::light as reference;
-use std::time::Instant;
 
 /// Pieces of a column that the horizon crosses, at most.
 const FINEST_SPLIT: u32 = 16;
@@ -50,16 +50,16 @@ impl Order<'_> {
 
     /// By twice finer and finer pieces of columns at the horizon, until two agree to half the tolerance.
     fn over_map(&self, map: &Environment, normals: &[[f64; 3]]) -> Result<Values> {
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let map = Prepared::new(map);
-        let prepared = start.elapsed().as_secs_f64();
+        let prepared = start.seconds();
         let tick = |share: f64| self.observer.advance(0.25 * share);
         let mut split = 1;
         let mut rgb = map.of(self.evaluator, normals, split, &tick)?;
         loop {
-            let start = Instant::now();
+            let start = Stopwatch::start();
             let finer = map.of(self.evaluator, normals, 2 * split, &tick)?;
-            let seconds = prepared + start.elapsed().as_secs_f64();
+            let seconds = prepared + start.seconds();
             let floor = FLOOR * largest(&finer);
             let apart = rgb.as_flattened().iter().zip(finer.as_flattened());
             let estimate = apart.map(|(a, b)| (a - b).abs() / b.max(floor)).fold(0.0, f64::max);
@@ -76,7 +76,7 @@ impl Order<'_> {
 
 /// By closed forms.
 fn closed(light: &Light, normals: &[[f64; 3]]) -> Values {
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let rgb = normals.iter().map(|&n| in_closed_form(light, n).unwrap_or([f64::NAN; 3])).collect();
     Values {
         rgb,
@@ -84,6 +84,6 @@ fn closed(light: &Light, normals: &[[f64; 3]]) -> Values {
         precision: "f64",
         // Roundings of products and of an arc cosine.
         estimate: Some(1e-12),
-        seconds: start.elapsed().as_secs_f64(),
+        seconds: start.seconds(),
     }
 }

@@ -7,6 +7,7 @@ mod radiosity;
 
 use crate::bake::{Evaluator, Observer};
 use crate::base::error::{Error, Result};
+use crate::base::timings::Stopwatch;
 use crate::check::{Check, Tally, reference_of_model, sample};
 use crate::light::exitant::Integrated;
 use crate::light::{Frame, Light};
@@ -18,7 +19,6 @@ use crate::table::storage::Storage;
 use crate::table::{ErrorKind, Table, TableError};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use std::time::Instant;
 
 /// Relative errors are taken of the value or of this share of the largest in the table, whichever is more: where no
 /// light comes from, nothing is relative to it.
@@ -172,9 +172,9 @@ pub fn lobes_of(material: &Material, roughness: Option<f64>) -> Result<Vec<Lobe>
 
 /// Does something, and adds the seconds that it took.
 fn timed<T>(seconds: &mut f64, act: impl FnOnce() -> T) -> T {
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let done = act();
-    *seconds += start.elapsed().as_secs_f64();
+    *seconds += start.seconds();
     done
 }
 

@@ -6,11 +6,13 @@
 //! 1e-10, at Chebyshev points of a coordinate in which it is analytic, once for each model and setting.
 
 mod scheme;
+#[cfg(feature = "verify")]
+mod violations;
 
 pub use scheme::Compensation;
 
 use crate::model::parameters::{Parameters, Setting};
-use crate::model::{Integral, Model, Violation};
+use crate::model::{Integral, Model};
 
 /// A factor s(μi, μe); several multiply.
 #[derive(Debug, Clone, PartialEq)]
@@ -123,30 +125,6 @@ impl Factor {
         }
     }
 
-    /// What it is known to break: a factor of the view alone is not reciprocal.
-    pub(crate) fn violations(&self) -> Vec<Violation> {
-        let reciprocity = |bound, source| Violation { property: "reciprocity", bound, source };
-        match self {
-            Self::Missing { .. } | Self::BelowSheen { .. } => Vec::new(),
-            Self::Restored { f0, .. } if *f0 == 0.0 => Vec::new(),
-            Self::Restored { .. } => vec![
-                reciprocity(RESTORED_DIFFERENCE, "Turquin 2019: its factor is of the view direction alone"),
-                Violation {
-                    property: "energy",
-                    bound: RESTORED_BOUND,
-                    source: "Turquin 2019: it balances what reaches a view, not what leaves a direction of incidence",
-                },
-            ],
-            Self::Coat { weight } | Self::BelowCoat { weight } if *weight == 0.0 => Vec::new(),
-            Self::Coat { .. } | Self::BelowCoat { .. } => {
-                vec![reciprocity(
-                    1.0,
-                    "KHR_materials_clearcoat: its Fresnel term is of the view direction alone",
-                )]
-            }
-        }
-    }
-
     /// In words, for plans and manifests.
     pub fn describe(&self) -> String {
         let name = |of: &Albedo| match of.roughness {
@@ -176,10 +154,6 @@ impl Factor {
         }
     }
 }
-
-/// f of a restored lobe against f of the exchanged directions, relative to the larger, at most: E of GGX with F = 1 is
-/// 1 − ln 2 or more, and 1 or less.
-const RESTORED_DIFFERENCE: f64 = 0.7;
 
 /// ρ_dh of a restored lobe with F = 1, at most: ∫ S/E(μe) cos θe dωe ≤ 1/min E = 1/(1 − ln 2). Of GGX it is 2.20 at
 /// α = 1 and grazing, by quadrature apart from this code.
