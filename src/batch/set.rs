@@ -12,6 +12,7 @@ use crate::plan::TablePlan;
 use crate::scene::LeftOut;
 use crate::scene::planner::{Basis, MaterialPlan, Plan};
 use crate::table::Table;
+use crate::table::quantity::RHO_DH;
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::panic::resume_unwind;
@@ -274,7 +275,7 @@ impl Finished<'_> {
 /// A material whose format lets it reflect more than it receives says so.
 fn energy_warnings(plan: &Plan, tables: &[Table]) -> Vec<String> {
     let gains =
-        |table: &&Table| table.quantity == "rho_dh" && plan.materials.iter().any(|m| m.name == table.subject);
+        |table: &&Table| table.quantity == &RHO_DH && plan.materials.iter().any(|m| m.name == table.subject);
     let largest = |table: &Table| table.values.iter().fold(0.0, f64::max);
     tables
         .iter()

@@ -8,7 +8,7 @@ use crate::model::lobe::Lobe;
 use crate::plan::TablePlan;
 use crate::reference::{Angles, Product};
 use crate::table::axis::{Axis, Variable};
-use crate::table::quantity::Evaluation;
+use crate::table::quantity::{Evaluation, FixedDirection, Quantity, RHO_DH};
 use crate::table::{ErrorKind, TableError, Values, indices};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -180,7 +180,7 @@ pub fn reference(table: &TablePlan, texel: usize) -> Vec<f64> {
         .collect();
     let mut channels = vec![0.0; table.channels().len()];
     for lobe in table.lobes() {
-        let [a, b] = reference_lobe(table.quantity().evaluation, lobe, &at);
+        let [a, b] = reference_lobe(table.quantity(), lobe, &at);
         for (channel, [weight_a, weight_b]) in channels.iter_mut().zip(lobe.weights()) {
             *channel += weight_a * a + weight_b * b;
         }
@@ -191,7 +191,7 @@ pub fn reference(table: &TablePlan, texel: usize) -> Vec<f64> {
 /// ρ_dh of a lobe by the reference at a direction of incidence, before its weights.
 pub(crate) fn reference_albedo(lobe: &Lobe, theta_i: f64, phi_i: f64) -> [f64; 2] {
     let at = BTreeMap::from([(Variable::ThetaI, theta_i), (Variable::PhiI, phi_i)]);
-    reference_lobe(Evaluation::Directional, lobe, &at)
+    reference_lobe(&RHO_DH, lobe, &at)
 }
 
 /// The reference's angles of a pair of directions.
@@ -213,7 +213,7 @@ pub(crate) fn reference_of(lobe: &Lobe, angles: &angles::Angles) -> [f64; 2] {
     f.map(|f| f * factor.unwrap_or(f64::NAN))
 }
 
-fn reference_lobe(evaluation: Evaluation, lobe: &Lobe, at: &BTreeMap<Variable, f64>) -> [f64; 2] {
+fn reference_lobe(quantity: &Quantity, lobe: &Lobe, at: &BTreeMap<Variable, f64>) -> [f64; 2] {
     let Some(reference) = lobe.model().reference else { return [f64::NAN; 2] };
     let get = |variable| at.get(&variable).copied();
     let Ok(setting) = &lobe.setting_at(get(Variable::Roughness)) else { return [f64::NAN; 2] };
@@ -228,27 +228,30 @@ fn reference_lobe(evaluation: Evaluation, lobe: &Lobe, at: &BTreeMap<Variable, f
         let f = reference.brdf(&Angles { theta_i, theta_e, delta_phi, phi_i }, setting);
         (f.unwrap_or([f64::NAN; 2]), theta_e)
     };
+    // μ of the direction that an integral keeps.
+    let fixed_mu = || {
+        let zenith = quantity.variables.first().and_then(|&variable| Some((variable, get(variable)?)));
+        zenith.map_or(1.0, |(variable, value)| variable.cosine(value))
+    };
     if lobe.factors().is_empty() {
-        return match evaluation {
+        return match quantity.evaluation {
             Evaluation::Value => value().0,
-            Evaluation::Directional => {
-                reference.rho_dh_at(get(Variable::Mu).unwrap_or(theta_i.cos()), phi_i, setting)
-            }
+            Evaluation::Directional(_) => reference.rho_dh_at(fixed_mu(), phi_i, setting),
             Evaluation::Hemispherical => reference.rho_hh(setting),
+            Evaluation::Light => [f64::NAN; 2],
         };
     }
     let Some(product) = Product::new(lobe, get(Variable::Roughness)) else { return [f64::NAN; 2] };
-    match evaluation {
+    match quantity.evaluation {
         Evaluation::Value => {
             let (f, theta_e) = value();
             f.map(|f| f * product.at(theta_i.cos(), theta_e.cos()))
         }
-        // Of the split sum it is ωe that is fixed.
-        Evaluation::Directional => match get(Variable::Mu) {
-            Some(mu) => product.rho_dh(reference, mu, setting, true),
-            None => product.rho_dh(reference, theta_i.cos(), setting, false),
-        },
+        Evaluation::Directional(fixed) => {
+            product.rho_dh(reference, fixed_mu(), setting, fixed == FixedDirection::Exitant)
+        }
         Evaluation::Hemispherical => product.rho_hh(reference, setting),
+        Evaluation::Light => [f64::NAN; 2],
     }
 }
 

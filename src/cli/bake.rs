@@ -4,6 +4,7 @@ use crate::backend::gpu::DeviceChoice;
 use crate::bake::Evaluator;
 use crate::base::error::{Error, Result};
 use crate::base::timings::Timings;
+use crate::base::words::alternatives;
 use crate::batch::{Baked, Options, Streaming, bake_set};
 use crate::check::Check;
 use crate::cli::watch::Watch;
@@ -11,6 +12,7 @@ use crate::cli::{HEADING, print, print_json, tell, warn};
 use crate::io::Format;
 use crate::scene;
 use crate::scene::planner::{Plan, Selection};
+use crate::table::quantity;
 use serde_json::json;
 use std::mem::ManuallyDrop;
 use std::path::PathBuf;
@@ -40,8 +42,7 @@ pub struct Args {
     /// Only this material and the bases that it uses
     #[arg(long, value_name = "NAME")]
     material: Option<String>,
-    /// Only this quantity: brdf, rho_dh, rho_hh or split_sum
-    #[arg(long, value_name = "Q")]
+    #[arg(long, value_name = "Q", help = only_this_quantity())]
     quantity: Option<String>,
     /// Print the plan and compute nothing
     #[arg(long)]
@@ -49,6 +50,11 @@ pub struct Args {
     /// Print the manifest on stdout, and everything for people on stderr
     #[arg(long)]
     json: bool,
+}
+
+/// The help of `--quantity`.
+fn only_this_quantity() -> String {
+    format!("Only this quantity: {}", alternatives(quantity::of_a_brdf().map(|quantity| quantity.name)))
 }
 
 const AFTER_HELP: &str = "\

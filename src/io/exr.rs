@@ -102,8 +102,8 @@ fn describe(table: &Table) -> serde_json::Result<BTreeMap<String, String>> {
     }
     let attributes = [
         ("name", table.name.clone()),
-        ("quantity", table.quantity.clone()),
-        ("unit", table.unit.clone()),
+        ("quantity", table.quantity.name.into()),
+        ("unit", table.quantity.unit.into()),
         ("subject", table.subject.clone()),
         ("parameters", json(&table.parameters)?),
         ("axes", json(&entry::axes(table))?),
@@ -126,9 +126,9 @@ fn in_words(table: &Table) -> String {
     format!(
         "{} of {}, unit {}. Axes, slowest first: {}. Width is the last axis, height the product of the \
          others, row-major; row 0 holds the first value. See gonio:axes for the sample positions.",
-        table.quantity,
+        table.quantity.name,
         table.subject,
-        table.unit,
+        table.quantity.unit,
         if axes.is_empty() { "none".into() } else { axes.join(", ") }
     )
 }

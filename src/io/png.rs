@@ -194,7 +194,7 @@ fn choose(axis: &Axis, count: usize) -> Vec<usize> {
 /// Title, what holds for the whole picture, and how far to trust it.
 fn header(canvas: &mut Canvas, table: &Table, notes: &[String]) {
     let width = canvas.width() as f32 - 40.0;
-    let title = format!("{}: {} of {} {}", table.name, table.quantity, table.subject, unit(table));
+    let title = format!("{}: {} of {} {}", table.name, table.quantity.name, table.subject, unit(table));
     let title = canvas.fit(&title, 24.0, width);
     canvas.text(&title, (20.0, 24.0), 24.0, Align::Left, BLACK);
 
@@ -228,17 +228,17 @@ fn header(canvas: &mut Canvas, table: &Table, notes: &[String]) {
 const SEPARATOR: &str = "   ·   ";
 
 fn unit(table: &Table) -> String {
-    if table.unit == "1" { String::new() } else { format!("[{}]", table.unit) }
+    if table.quantity.unit == "1" { String::new() } else { format!("[{}]", table.quantity.unit) }
 }
 
 /// The label of the values: "brdf [sr⁻¹]".
 fn quantity(table: &Table) -> String {
-    format!("{} {}", table.quantity, unit(table)).trim_end().to_owned()
+    format!("{} {}", table.quantity.name, unit(table)).trim_end().to_owned()
 }
 
 /// Densities per solid angle span decades; reflectances do not.
 fn is_density(table: &Table) -> bool {
-    table.unit != "1"
+    table.quantity.unit != "1"
 }
 
 /// R, G and B as they are; else colours that also the colour-blind tell apart (Okabe and Ito, 2008).

@@ -282,10 +282,7 @@ impl TablePlan {
     /// The plan with what follows from its tolerance.
     fn decided(mut self) -> Self {
         let tolerance = self.tolerance.get();
-        let floor = match self.quantity.evaluation {
-            Evaluation::Value => self.value_f32(),
-            _ => self.integral_f32(),
-        };
+        let floor = if self.quantity.is_value() { self.value_f32() } else { self.integral_f32() };
         let precision = if tolerance < floor { Precision::F64 } else { Precision::F32 };
         let rule_tolerance = match self.storage {
             Storage::Unorm16 => (RULE_SHARE * tolerance).min(UNORM_RULE),
@@ -311,6 +308,9 @@ impl TablePlan {
     /// Refuses what cannot be carried out.
     fn check(&self) -> Result<()> {
         let refuse = |why: String| Err(Error::input(format!("table \"{}\": {why}", self.name)));
+        if let Some(why) = self.quantity.refused() {
+            return refuse(why);
+        }
         let variables: Vec<_> = self.axes.iter().map(|axis| axis.variable()).collect();
         let swept = variables.first() == Some(&Variable::Roughness);
         let anisotropic = self.lobes.iter().any(|lobe| lobe.model().is_anisotropic());
@@ -355,7 +355,7 @@ impl TablePlan {
                 return refuse(format!("{} needs a roughness: give a value or an axis", model.name));
             }
             let alphas = self.alphas(lobe);
-            let value = self.quantity.evaluation == Evaluation::Value;
+            let value = self.quantity.is_value();
             if value && model.is_delta() {
                 return refuse(format!("{} is a delta and has no values; tabulate rho_dh", model.name));
             }
@@ -387,7 +387,7 @@ impl TablePlan {
         let streams = self.can_stream();
         let most = if streams { MAX_STREAMED } else { MAX_VALUES };
         if values.is_none_or(|n| n > most) {
-            let value = self.quantity.evaluation == Evaluation::Value;
+            let value = self.quantity.is_value();
             let more = match value && !streams {
                 true => {
                     format!(
@@ -432,10 +432,7 @@ impl TablePlan {
         }
         for lobe in &self.lobes {
             let model = lobe.model();
-            if !lobe.factors().is_empty()
-                && self.rule != Rule::Warped
-                && self.quantity.evaluation != Evaluation::Value
-            {
+            if !lobe.factors().is_empty() && self.rule != Rule::Warped && self.quantity.is_integral() {
                 return Err(format!(
                     "the {name} rule does not do a lobe times a factor; use the warped rule"
                 ));
@@ -446,7 +443,7 @@ impl TablePlan {
                     self.rule.samples().is_none()
                 }
                 Integral::Delta(_) => matches!(self.rule, Rule::Warped | Rule::Grid { .. }),
-                Integral::Unbounded(_) => self.quantity.evaluation == Evaluation::Value,
+                Integral::Unbounded(_) => self.quantity.is_value(),
             };
             let fits = fits && (!model.is_anisotropic() || self.rule == Rule::Warped);
             if !fits {
@@ -475,12 +472,13 @@ impl TablePlan {
             Evaluation::Value => {
                 count(self.axis(Variable::ThetaI)).saturating_mul(count(self.axis(Variable::ThetaE)))
             }
-            Evaluation::Directional => {
+            Evaluation::Directional(_) => {
                 let azimuths = count(self.axis(Variable::PhiI));
-                let fixed = self.axis(Variable::Mu).or_else(|| self.axis(Variable::ThetaI));
+                let fixed = self.quantity.variables.first().and_then(|&zenith| self.axis(zenith));
                 count(fixed).saturating_mul(azimuths).saturating_mul(nodes)
             }
             Evaluation::Hemispherical => NODES.saturating_mul(nodes),
+            Evaluation::Light => 0,
         }
     }
 
@@ -510,9 +508,7 @@ impl TablePlan {
 
     /// Whether it can be baked and written piece by piece: values, in f32 throughout.
     pub(crate) fn can_stream(&self) -> bool {
-        self.quantity.evaluation == Evaluation::Value
-            && self.precision() == Precision::F32
-            && self.stored() == Storage::F32
+        self.quantity.is_value() && self.precision() == Precision::F32 && self.stored() == Storage::F32
     }
 
     /// Refuses what is too large for one piece.
@@ -588,7 +584,7 @@ impl fmt::Display for TablePlan {
             let open = if k == 0 { " over " } else { " × " };
             write!(f, "{open}{} {} [{a:.4}, {b:.4}]", axis.variable().name(), axis.len())?;
         }
-        if self.quantity.evaluation != Evaluation::Value {
+        if self.quantity.is_integral() {
             write!(f, ", {}", self.rule)?;
         }
         if self.storage != Storage::F32 {

@@ -45,6 +45,16 @@ impl Variable {
         Self::Harmonic,
     ];
 
+    /// The zenith angle that a value of a direction's θ or μ stands for.
+    pub(crate) fn zenith(self, value: f64) -> f64 {
+        if self == Self::Mu { value.acos() } else { value }
+    }
+
+    /// The cosine of that angle.
+    pub(crate) fn cosine(self, value: f64) -> f64 {
+        if self == Self::Mu { value } else { value.cos() }
+    }
+
     /// The name in recipes, files and manifests.
     pub fn name(self) -> &'static str {
         match self {

@@ -4,6 +4,7 @@
 use crate::common::readers;
 use gonio::io::{Format, Provenance, TableEntry, TableSet, read_manifest, verify};
 use gonio::table::axis::{Axis, Mapping, Positions, Variable};
+use gonio::table::quantity::BRDF;
 use gonio::table::storage::Storage;
 use gonio::table::{ErrorKind, Table, TableError, indices};
 use serde_json::{Value, json};
@@ -23,8 +24,8 @@ fn exr_holds_values_axes_and_provenance() {
             assert_eq!(read, baked, "{}, channel {name}", table.name);
         }
         assert_eq!(image.text("gonio:name"), table.name);
-        assert_eq!(image.text("gonio:quantity"), table.quantity);
-        assert_eq!(image.text("gonio:unit"), table.unit);
+        assert_eq!(image.text("gonio:quantity"), table.quantity.name);
+        assert_eq!(image.text("gonio:unit"), table.quantity.unit);
         assert_eq!(image.text("gonio:subject"), table.subject);
         assert_eq!(image.text("gonio:rule"), table.rule);
         assert_eq!(image.text("gonio:precision"), table.precision);
@@ -415,8 +416,7 @@ fn table(name: &str, axes: Vec<Axis>, channels: &[&str], f: impl Fn(&[f64]) -> f
     let values: Vec<f32> = values.map(|(t, c)| (value(t) * (1.0 + 0.1 * c as f64)) as f32).collect();
     Table {
         name: name.into(),
-        quantity: "brdf".into(),
-        unit: "sr⁻¹".into(),
+        quantity: &BRDF,
         subject: "gold α".into(),
         parameters: BTreeMap::from([("alpha".into(), 0.1)]),
         axes,

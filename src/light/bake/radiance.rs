@@ -4,7 +4,7 @@ use crate::base::angles::Angles;
 use crate::base::error::Result;
 use crate::base::timings::Timings;
 use crate::check::reference_of;
-use crate::light::bake::{MARGIN, Order, RADIANCE, Values, estimate, frames, lobes_of, timed};
+use crate::light::bake::{FLOOR, MARGIN, Order, Values, estimate, frames, lobes_of, timed};
 use crate::light::exitant;
 use crate::light::exitant::View;
 use crate::model::lobe::Lobe;
@@ -12,6 +12,7 @@ use crate::reference::light as reference;
 use crate::scene::Material;
 use crate::table::Table;
 use crate::table::axis::{Axis, Variable};
+use crate::table::quantity::{RADIANCE, RADIANCE_SPLIT_SUM};
 
 impl Order<'_> {
     /// Le of a material over roughness (where `roughness` says one or more), normals and ωe, and beside it LD(r) (F0·A +
@@ -80,12 +81,11 @@ impl Order<'_> {
                 let (lobes, view) = of(texel);
                 self.le_by_the_reference(lobes, view)
             })?;
-            let exact = self.light_table(["radiance", RADIANCE, &subject], &axes, exact, &truths)?;
+            let exact = self.table(&RADIANCE, &subject, &axes, exact, FLOOR, &truths)?;
             // It is held to the exact one, all of it.
             let known: Vec<_> =
                 (0..exact.texels()).map(|k| (k, std::array::from_fn(|c| exact.value(k, c)))).collect();
-            let mut split =
-                self.light_table(["radiance_split_sum", RADIANCE, &subject], &axes, split, &known)?;
+            let mut split = self.table(&RADIANCE_SPLIT_SUM, &subject, &axes, split, FLOOR, &known)?;
             split.error.against = Some("the exact radiance".into());
             Ok([exact, split])
         })

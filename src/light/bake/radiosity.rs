@@ -4,13 +4,14 @@ use crate::base::error::Result;
 use crate::base::timings::Timings;
 use crate::check::{Check, reference_albedo};
 use crate::light::bake::radiance::weighed;
-use crate::light::bake::{IRRADIANCE, MARGIN, Order, Truths, Values, estimate, frames, lobes_of, timed};
+use crate::light::bake::{FLOOR, MARGIN, Order, Truths, Values, estimate, frames, lobes_of, timed};
 use crate::light::{Frame, exitant};
 use crate::model::lobe::Lobe;
 use crate::reference::light as reference;
 use crate::scene::Scene;
 use crate::table::Table;
 use crate::table::axis::Axis;
+use crate::table::quantity::{RADIOSITY, REFLECTED_SHARE};
 
 impl Order<'_> {
     /// M of a material over normals, and M/E. `axes` are θn and φn.
@@ -59,8 +60,8 @@ impl Order<'_> {
             let shares: Vec<_> =
                 m.iter().zip(&e).map(|(&(texel, m), &(_, e))| (texel, share(m, e))).collect();
             Ok([
-                self.light_table(["radiosity", IRRADIANCE, &subject], &axes, radiosity, &m)?,
-                self.light_table(["reflected_share", "1", &subject], &axes, ratio, &shares)?,
+                self.table(&RADIOSITY, &subject, &axes, radiosity, FLOOR, &m)?,
+                self.table(&REFLECTED_SHARE, &subject, &axes, ratio, FLOOR, &shares)?,
             ])
         })
     }
