@@ -24,7 +24,7 @@ use std::time::Instant;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     /// The files of each table.
-    pub formats: Vec<Format>,
+    pub formats: Vec<&'static Format>,
     /// How many texels of each table to compare with the reference.
     pub check: Check,
     /// Which tables are written piece by piece.

@@ -9,7 +9,7 @@ use crate::batch::{Baked, Options, Streaming, bake_set};
 use crate::check::Check;
 use crate::cli::watch::Watch;
 use crate::cli::{HEADING, print, print_json, tell, warn};
-use crate::io::Format;
+use crate::io::{Format, format};
 use crate::scene;
 use crate::scene::planner::{Plan, Selection};
 use crate::table::quantity;
@@ -34,8 +34,8 @@ pub struct Args {
     #[arg(long, value_name = "NAME", default_value = "auto")]
     device: DeviceChoice,
     /// Files to write for each table, separated by commas
-    #[arg(long, value_name = "F", value_delimiter = ',', default_value = "exr,png")]
-    format: Vec<Format>,
+    #[arg(long, value_name = "F", value_delimiter = ',', default_value = "exr,png", value_parser = format::find)]
+    format: Vec<&'static Format>,
     /// Texels of each table to compare with the f64 reference: a count, or all
     #[arg(long, value_name = "N", default_value = "256")]
     check: Check,

@@ -12,7 +12,7 @@ use crate::cli::subject;
 use crate::cli::subject::key_value;
 use crate::cli::watch::Watch;
 use crate::cli::{HEADING, device_json, print_beside, print_json, warn};
-use crate::io::{Format, Provenance, TableEntry, TableSet, sha256};
+use crate::io::{Format, Provenance, TableEntry, TableSet, format, sha256};
 use crate::light;
 use crate::light::bake::Order;
 use crate::light::{Clamped, Light};
@@ -74,8 +74,8 @@ pub struct Args {
     #[arg(long, value_name = "NAME", default_value = "auto")]
     device: DeviceChoice,
     /// Files to write for each table, separated by commas
-    #[arg(long, value_name = "F", value_delimiter = ',', default_value = "exr,png")]
-    format: Vec<Format>,
+    #[arg(long, value_name = "F", value_delimiter = ',', default_value = "exr,png", value_parser = format::find)]
+    format: Vec<&'static Format>,
     /// Texels of each table to compare with the f64 reference: a count, or all [default: 256; of radiance and radiosity 8]
     #[arg(long, value_name = "N")]
     check: Option<Check>,

@@ -3,7 +3,8 @@
 
 use crate::base::angles::Angles;
 use crate::base::error::Result;
-use crate::io::{Format, Provenance, write_together};
+use crate::io::format::PNG;
+use crate::io::{Provenance, write_together};
 use crate::table::axis::{Axis, Variable};
 use crate::table::quantity::{BRDF, Quantity, RHO_DH};
 use crate::table::storage::Storage;
@@ -31,7 +32,7 @@ pub fn write(dir: &Path, stem: &str, subject: &mut dyn Subject, report: &Report)
     let mut files = Vec::new();
     for (table, what) in tables.into_iter().zip(["rho_dh", "error"]) {
         if let Some(table) = table {
-            files.push((format!("{stem}.{what}.png"), Format::Png.encode(&table, &Provenance::new())?));
+            files.push((format!("{stem}.{what}.png"), PNG.encode(&table, &Provenance::new())?));
         }
     }
     write_together(dir, &files)?;

@@ -1,6 +1,7 @@
 //! PNG previews, for people: numbers, a line plot, heat maps, or small multiples of slices.
 
 use crate::base::error::Result;
+use crate::io::Provenance;
 use crate::io::draw::canvas::{Align, BLACK, Canvas, Color, Frame, GREY};
 use crate::io::draw::panel::{
     BAR, BELOW, LABEL_SIZE, LEFT, Shown, Slice, TICK_SIZE, axis_labels, color_bar, heat_map, ticks_below,
@@ -8,11 +9,21 @@ use crate::io::draw::panel::{
 };
 use crate::io::draw::scale;
 use crate::io::draw::scale::{Kind, Scale};
+use crate::io::format::{Format, Streamed};
 use crate::table::axis::Axis;
 use crate::table::{ErrorKind, Table};
 
+/// A preview to look at, not to read values from.
+pub static PNG: Format = Format {
+    name: "png",
+    extension: "png",
+    summary: "PNG: a picture to look at, not to read values from",
+    encode,
+    streamed: Streamed::Preview,
+};
+
 /// The bytes of the file. Axes of one sample are no axes here; the subtitle names their values.
-pub(super) fn encode(table: &Table) -> Result<Vec<u8>> {
+fn encode(table: &Table, _: &Provenance) -> Result<Vec<u8>> {
     let axes: Vec<_> = (0..table.axes.len()).filter(|&k| table.axes[k].len() > 1).collect();
     match axes[..] {
         [] => numbers(table),
