@@ -7,6 +7,7 @@ use crate::batch::stream;
 use crate::batch::stream::{Progress, Streaming};
 use crate::check::Check;
 use crate::io;
+use crate::io::target::Target;
 use crate::io::{Files, Format, Provenance, TableEntry, TableSet, Tiles};
 use crate::plan::TablePlan;
 use crate::scene::LeftOut;
@@ -25,6 +26,8 @@ use std::time::Instant;
 pub struct Options {
     /// The files of each table.
     pub formats: Vec<&'static Format>,
+    /// Whom the files are for.
+    pub target: &'static Target,
     /// How many texels of each table to compare with the reference.
     pub check: Check,
     /// Which tables are written piece by piece.
@@ -117,7 +120,8 @@ pub fn bake_set(
         written: Vec::new(),
         misses: Vec::new(),
     };
-    let streams = |table: &&TablePlan| options.streaming.takes(table);
+    // Rows come in the order of the table: a target of another order takes it in one piece.
+    let streams = |table: &&TablePlan| options.target.is_identity() && options.streaming.takes(table);
     let key =
         |table: &TablePlan| stream::key(table, &scene.sha256, &provenance["device"], &options.streaming);
     let keys: BTreeSet<_> = plan.tables.iter().filter(streams).map(key).collect();
@@ -235,9 +239,12 @@ impl Finished<'_> {
     }
 
     fn take(&mut self, plan: &TablePlan, table: Table, stages: &mut Timings) -> Result<()> {
-        if self.is_met(plan, &table) {
+        let is_met = self.is_met(plan, &table);
+        let table = self.options.target.apply(table)?;
+        if is_met {
             let start = Instant::now();
-            self.written.push(self.set.write(&table, &self.options.formats, self.provenance)?);
+            let formats = self.options.target.formats(&self.options.formats);
+            self.written.push(self.set.write(&table, &formats, self.provenance)?);
             stages.write += start.elapsed().as_secs_f64();
         }
         self.tables.push(table);
@@ -256,8 +263,9 @@ impl Finished<'_> {
         if self.is_met(plan, &table) {
             observer.begin(&format!("writing {}", table.name));
             let start = Instant::now();
-            let (formats, tick) = (&self.options.formats, &mut |share| observer.advance(share));
-            let written = self.set.write_streamed(&table, tiles, preview, formats, self.provenance, tick)?;
+            let formats = self.options.target.formats(&self.options.formats);
+            let tick = &mut |share| observer.advance(share);
+            let written = self.set.write_streamed(&table, tiles, preview, &formats, self.provenance, tick)?;
             self.written.push(written);
             stages.write += start.elapsed().as_secs_f64();
         }

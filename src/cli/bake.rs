@@ -9,6 +9,7 @@ use crate::batch::{Baked, Options, Streaming, bake_set};
 use crate::check::Check;
 use crate::cli::watch::Watch;
 use crate::cli::{HEADING, print, print_json, tell, warn};
+use crate::io::target::IDENTITY;
 use crate::io::{Format, format};
 use crate::scene;
 use crate::scene::planner::{Plan, Selection};
@@ -120,7 +121,7 @@ pub fn run(args: &Args) -> Result<()> {
     let watch = Watch::new(2 * plan.tables.len());
     let mut formats = args.format.clone();
     formats.dedup();
-    let options = Options { formats, check: args.check, streaming: Streaming::default() };
+    let options = Options { formats, target: &IDENTITY, check: args.check, streaming: Streaming::default() };
     let baked = bake_set(&plan, &args.scene, &evaluator, out, &options, stages, &watch);
     watch.finish();
     let baked = baked?;

@@ -12,6 +12,7 @@ use crate::cli::subject;
 use crate::cli::subject::key_value;
 use crate::cli::watch::Watch;
 use crate::cli::{HEADING, device_json, print_beside, print_json, warn};
+use crate::io::target::IDENTITY;
 use crate::io::{Format, Provenance, TableEntry, TableSet, format, sha256};
 use crate::light;
 use crate::light::bake::Order;
@@ -329,6 +330,7 @@ fn make(
     let mut formats = args.format.clone();
     formats.dedup();
     let mut written = Vec::new();
+    let tables = tables.into_iter().map(|table| IDENTITY.apply(table)).collect::<Result<Vec<_>>>()?;
     for table in &tables {
         written.push(set.write(table, &formats, &provenance)?);
     }

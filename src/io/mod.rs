@@ -11,6 +11,7 @@ mod manifest;
 mod pairs;
 mod set;
 mod stream;
+pub mod target;
 
 pub use entry::TableEntry;
 pub use format::Format;

@@ -251,7 +251,7 @@ impl Axis {
         self.range
     }
 
-    /// The values, in the variable's unit, strictly increasing.
+    /// The values, in the variable's unit, strictly increasing unless a target reversed them.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
@@ -272,6 +272,18 @@ impl Axis {
     /// The axis at some of its samples, by their indices: a preview's.
     pub(crate) fn thinned(&self, indices: &[usize]) -> Self {
         Self { values: indices.iter().map(|&k| self.values[k]).collect(), ..*self }
+    }
+
+    /// The same samples from the last to the first, for readers whose axis runs down: the one axis whose values
+    /// decrease. A square-root mapping has no reversed form, so that its values are listed.
+    pub(crate) fn reversed(&self) -> Self {
+        let [a, b] = self.range;
+        let (mapping, positions) = match self.mapping {
+            Mapping::Linear => (self.mapping, self.positions),
+            Mapping::Sqrt => (Mapping::Linear, Positions::Values),
+        };
+        let values = self.values.iter().rev().copied().collect();
+        Self { variable: self.variable, mapping, positions, range: [b, a], values }
     }
 
     /// Number of samples.

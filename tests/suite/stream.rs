@@ -8,6 +8,7 @@ use gonio::base::timings::Timings;
 use gonio::batch::{Baked, Options, Streaming, bake_set};
 use gonio::check::Check;
 use gonio::io::format::FORMATS;
+use gonio::io::target::IDENTITY;
 use gonio::scene::planner::{Plan, Selection};
 use gonio::table::storage::Storage;
 use gonio::{Result, scene};
@@ -62,7 +63,7 @@ fn bake_recipe(
     observer: &dyn Observer,
 ) -> Result<Baked> {
     let plan = Plan::new(&scene::read(recipe)?, &Selection::default())?;
-    let options = Options { formats: FORMATS.to_vec(), check, streaming };
+    let options = Options { formats: FORMATS.to_vec(), target: &IDENTITY, check, streaming };
     bake_set(&plan, recipe, evaluator, out, &options, Timings::default(), observer)
 }
 
