@@ -5,7 +5,7 @@
 
 use crate::base::error::{Error, Result};
 use crate::io::Provenance;
-use crate::io::format::RowWriter;
+use crate::io::format::BeginRows;
 use crate::io::set::explain;
 use crate::table::Table;
 use sha2::{Digest, Sha256};
@@ -64,10 +64,10 @@ fn floats(bytes: &[u8]) -> Vec<f32> {
     bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
 }
 
-/// Writes a table's file from its tiles, row by row. `begin` appends what precedes the first row. Returns the SHA-256 of
+/// Writes a table's file from its tiles, row by row. Returns the SHA-256 of
 /// the file.
 pub(super) fn write(
-    begin: fn(&Table, &Provenance, &mut Vec<u8>) -> Result<Box<dyn RowWriter>>,
+    begin: BeginRows,
     table: &Table,
     tiles: &Tiles,
     provenance: &Provenance,

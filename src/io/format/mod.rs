@@ -23,11 +23,14 @@ pub struct Format {
 
 /// How a format writes a table larger than memory.
 pub(crate) enum Streamed {
-    /// Row by row. The function appends all that precedes the first row to a file.
-    Rows(fn(&Table, &Provenance, &mut Vec<u8>) -> Result<Box<dyn RowWriter>>),
+    /// Row by row.
+    Rows(BeginRows),
     /// Only a part of it is shown: a picture.
     Preview,
 }
+
+/// Appends all that precedes the first row to a file, and returns the writer of its rows.
+pub(crate) type BeginRows = fn(&Table, &Provenance, &mut Vec<u8>) -> Result<Box<dyn RowWriter>>;
 
 /// Writes the rows of a table in f32, from the first to the last. The file has the bytes that
 /// [`Format::encode`] makes of the whole table.
