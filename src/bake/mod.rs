@@ -18,7 +18,7 @@ use crate::integrate::scale::factor_error;
 use crate::model::compensation::Factor;
 use crate::model::lobe::Lobe;
 use crate::plan::TablePlan;
-use crate::table::quantity::Evaluation;
+use crate::table::quantity::Limits;
 use crate::table::rule::Rule;
 use crate::table::storage::{Storage, Stored};
 use crate::table::{Table, TableError, Values};
@@ -99,10 +99,7 @@ impl Evaluator {
         let mut values = path.evaluate(plan, stages, &tick)?;
         let seconds = stages.dispatch + stages.readback - before;
         let mut estimate = path.estimate(plan);
-        if check != Check::Sample(0)
-            && plan.rule() == Rule::Warped
-            && plan.quantity().evaluation != Evaluation::Value
-        {
+        if check != Check::Sample(0) && plan.rule() == Rule::Warped && plan.quantity().is_integral() {
             // The finest rule has none beyond it to be checked by: comparing it with itself proves nothing.
             let finest = plan.rule_tolerance() <= FINEST;
             estimate = match finest {
@@ -124,9 +121,7 @@ impl Evaluator {
     pub(crate) fn path(&self, plan: &TablePlan) -> Path<'_> {
         match (self, plan.precision()) {
             (Self::Device(device), Precision::F32) => Path::Device(device, Precision::F32),
-            (Self::Device(device), Precision::F64)
-                if device.has_f64() && plan.quantity().evaluation != Evaluation::Value =>
-            {
+            (Self::Device(device), Precision::F64) if device.has_f64() && plan.quantity().is_integral() => {
                 Path::Device(device, Precision::F64)
             }
             (_, precision) => Path::Cpu(precision),
@@ -177,8 +172,7 @@ impl Origin {
     pub(crate) fn table(self, plan: &TablePlan, values: Values, error: TableError) -> Table {
         Table {
             name: plan.name().into(),
-            quantity: plan.quantity().name.into(),
-            unit: plan.quantity().unit.into(),
+            quantity: plan.quantity(),
             subject: plan.subject().into(),
             parameters: plan.parameters(),
             axes: plan.axes().to_vec(),
@@ -251,7 +245,7 @@ impl Path<'_> {
     /// What is promised before anything is measured: the budget of values, the tolerance of the warped
     /// rule. The other rules promise nothing.
     pub(crate) fn estimate(self, plan: &TablePlan) -> Option<f64> {
-        if plan.quantity().evaluation != Evaluation::Value {
+        if plan.quantity().is_integral() {
             return (plan.rule() == Rule::Warped).then_some(plan.tolerance());
         }
         let factors = factor_error(plan);
@@ -268,8 +262,7 @@ impl Path<'_> {
 
     /// The rule, and where it ran if that was not the evaluator's own place.
     fn rule(self, plan: &TablePlan, evaluator: &Evaluator) -> String {
-        let value = plan.quantity().evaluation == Evaluation::Value;
-        let rule = if value { "pointwise".into() } else { plan.rule().to_string() };
+        let rule = if plan.quantity().is_value() { "pointwise".into() } else { plan.rule().to_string() };
         match (self, evaluator) {
             (Self::Cpu(_), Evaluator::Device(_)) => {
                 format!("{rule}, on the CPU: f32 cannot meet the tolerance")
@@ -305,7 +298,7 @@ pub fn within_tolerance(plan: &TablePlan, table: &Table) -> Result<()> {
         )));
     }
     // Measured against the reference, or between two rules: whichever is worse.
-    let certified = plan.rule() == Rule::Warped && plan.quantity().evaluation != Evaluation::Value;
+    let certified = plan.rule() == Rule::Warped && plan.quantity().is_integral();
     let between = table.error.estimate.filter(|_| certified);
     let measured = table.error.measured_max.into_iter().chain(between).fold(0.0, f64::max);
     if measured <= plan.tolerance() {
@@ -334,7 +327,7 @@ pub fn within_tolerance(plan: &TablePlan, table: &Table) -> Result<()> {
 
 /// No direction may send back more than the lobes' models promise (1 each where energy is conserved).
 fn check_energy(plan: &TablePlan, table: &Table) -> Result<()> {
-    if plan.quantity().evaluation == Evaluation::Value {
+    if plan.quantity().limits != Limits::Reflectance {
         return Ok(());
     }
     // A basis is weighed by F0 and F90 ≤ 1, so its components reflect together; RGB does not mix.
@@ -360,4 +353,41 @@ fn check_energy(plan: &TablePlan, table: &Table) -> Result<()> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model;
+    use crate::model::compensation::Compensation;
+    use crate::table::axis::{Axis, Variable};
+    use crate::table::quantity::{Evaluation, FixedDirection, Quantity, RHO_DH};
+
+    /// ρ_hd = ∫ f cos θi dωi: ωe is fixed. What its description says is all that the bake needs to know of it.
+    static RHO_HD: Quantity = Quantity {
+        name: "rho_hd",
+        symbol: "ρ_hd",
+        summary: "hemispherical-directional reflectance",
+        variables: &[Variable::ThetaE],
+        anisotropic_variables: &[Variable::ThetaE, Variable::PhiI],
+        evaluation: Evaluation::Directional(FixedDirection::Exitant),
+        ..RHO_DH
+    };
+
+    /// A new quantity is planned, integrated and compared with the reference by its description alone, and is ρ_dh of
+    /// a reciprocal model. Restored by Turquin's factor a lobe is not reciprocal: there the fixed direction decides.
+    #[test]
+    fn a_quantity_is_what_its_description_says() {
+        let bake = |quantity: &'static Quantity, kind: Compensation| {
+            let ggx = model::find("ggx-smith-correlated-none").unwrap();
+            let axes = vec![Axis::natural(quantity.variables[0], 5).unwrap()];
+            let plan = TablePlan::basis("t", quantity, ggx, Some(0.8), axes).unwrap();
+            let plan = plan.with_compensation(kind).unwrap();
+            let table = Evaluator::Cpu.bake(&plan, Check::All, &mut Timings::default(), &Unobserved).unwrap();
+            assert!(table.error.measured_max.unwrap() <= plan.tolerance(), "{:?}", table.error);
+            table.values
+        };
+        assert_eq!(bake(&RHO_HD, Compensation::None), bake(&RHO_DH, Compensation::None));
+        assert_ne!(bake(&RHO_HD, Compensation::Turquin), bake(&RHO_DH, Compensation::Turquin));
+    }
 }

@@ -9,3 +9,4 @@ pub mod radiometry;
 pub(crate) mod sequence;
 pub mod timings;
 pub mod tolerance;
+pub(crate) mod words;

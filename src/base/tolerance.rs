@@ -39,6 +39,7 @@ impl Tolerance {
         Err(Error::input(format!("a tolerance of {value}; give a number above 0, such as 1e-4")))
     }
 
+    #[cfg(feature = "check")]
     /// A tolerance from a constant, or from a share of one that was checked.
     pub(crate) const fn known(value: f64) -> Self {
         Self(value)
@@ -72,9 +73,11 @@ pub(crate) const KEPT_SHARE: f64 = 0.5;
 pub(crate) const ENERGY_SLACK: f64 = 2.0;
 
 /// The share that the layout search may use up at its test points.
+#[cfg(feature = "check")]
 pub(crate) const LAYOUT_MARGIN: f64 = 0.98;
 
 /// The share of the table that the layout search takes for exact.
+#[cfg(feature = "check")]
 pub(crate) const LAYOUT_REFERENCE_SHARE: f64 = 0.01;
 
 /// The finest tolerance that the tables of node counts know.

@@ -8,11 +8,13 @@ use crate::batch::stream;
 use crate::batch::stream::{Progress, Streaming};
 use crate::check::Check;
 use crate::io;
+use crate::io::target::Target;
 use crate::io::{Files, Format, Provenance, TableEntry, TableSet, Tiles};
 use crate::plan::TablePlan;
 use crate::scene::LeftOut;
 use crate::scene::planner::{Basis, MaterialPlan, Plan};
 use crate::table::Table;
+use crate::table::quantity::RHO_DH;
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::panic::resume_unwind;
@@ -23,7 +25,9 @@ use std::thread::{self, ScopedJoinHandle};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     /// The files of each table.
-    pub formats: Vec<Format>,
+    pub formats: Vec<&'static Format>,
+    /// Whom the files are for.
+    pub target: &'static Target,
     /// How many texels of each table to compare with the reference.
     pub check: Check,
     /// Which tables are written piece by piece.
@@ -116,7 +120,8 @@ pub fn bake_set(
         written: Vec::new(),
         misses: Vec::new(),
     };
-    let streams = |table: &&TablePlan| options.streaming.takes(table);
+    // Rows come in the order of the table: a target of another order takes it in one piece.
+    let streams = |table: &&TablePlan| options.target.is_identity() && options.streaming.takes(table);
     let key =
         |table: &TablePlan| stream::key(table, &scene.sha256, &provenance["device"], &options.streaming);
     let keys: BTreeSet<_> = plan.tables.iter().filter(streams).map(key).collect();
@@ -234,9 +239,12 @@ impl Finished<'_> {
     }
 
     fn take(&mut self, plan: &TablePlan, table: Table, stages: &mut Timings) -> Result<()> {
-        if self.is_met(plan, &table) {
+        let is_met = self.is_met(plan, &table);
+        let table = self.options.target.apply(table)?;
+        if is_met {
             let start = Stopwatch::start();
-            self.written.push(self.set.write(&table, &self.options.formats, self.provenance)?);
+            let formats = self.options.target.formats(&self.options.formats);
+            self.written.push(self.set.write(&table, &formats, self.provenance)?);
             stages.write += start.seconds();
         }
         self.tables.push(table);
@@ -255,8 +263,9 @@ impl Finished<'_> {
         if self.is_met(plan, &table) {
             observer.begin(&format!("writing {}", table.name));
             let start = Stopwatch::start();
-            let (formats, tick) = (&self.options.formats, &mut |share| observer.advance(share));
-            let written = self.set.write_streamed(&table, tiles, preview, formats, self.provenance, tick)?;
+            let formats = self.options.target.formats(&self.options.formats);
+            let tick = &mut |share| observer.advance(share);
+            let written = self.set.write_streamed(&table, tiles, preview, &formats, self.provenance, tick)?;
             self.written.push(written);
             stages.write += start.seconds();
         }
@@ -274,7 +283,7 @@ impl Finished<'_> {
 /// A material whose format lets it reflect more than it receives says so.
 fn energy_warnings(plan: &Plan, tables: &[Table]) -> Vec<String> {
     let gains =
-        |table: &&Table| table.quantity == "rho_dh" && plan.materials.iter().any(|m| m.name == table.subject);
+        |table: &&Table| table.quantity == &RHO_DH && plan.materials.iter().any(|m| m.name == table.subject);
     let largest = |table: &Table| table.values.iter().fold(0.0, f64::max);
     tables
         .iter()

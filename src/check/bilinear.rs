@@ -16,7 +16,6 @@ use crate::check;
 use crate::check::Check;
 use crate::plan::TablePlan;
 use crate::table::axis::{Axis, Mapping, Positions, Variable};
-use crate::table::quantity::Evaluation;
 use crate::table::report::InterpolationError;
 use crate::table::{Values, indices};
 use rayon::prelude::*;
@@ -108,7 +107,7 @@ pub(crate) fn largest(plan: &TablePlan, values: &Values) -> f64 {
 /// Whether a reader can sample the table: an integral, over axes that a formula finds its place in.
 fn is_sampled(plan: &TablePlan) -> bool {
     let found = |axis: &Axis| axis.len() == 1 || axis.positions() != Positions::Values;
-    plan.quantity().evaluation != Evaluation::Value
+    plan.quantity().is_integral()
         && plan.axes().iter().all(found)
         && plan.axes().iter().any(|axis| axis.len() > 1)
 }

@@ -3,11 +3,11 @@
 use crate::base::angles::delta_phi;
 use crate::base::error::Result;
 use crate::base::sequence::stride;
-use crate::check::reference::{Fixed, ReferenceLobe, reference_of_model};
+use crate::check::reference::{ReferenceLobe, reference_of_model};
 use crate::model::lobe::Lobe;
 use crate::plan::TablePlan;
 use crate::table::axis::{Axis, Variable};
-use crate::table::quantity::Evaluation;
+use crate::table::quantity::{Evaluation, Quantity};
 use crate::table::{Check, TableError, Values, indices};
 use gonio_reference::Angles;
 use rayon::prelude::*;
@@ -144,7 +144,7 @@ pub fn reference(table: &TablePlan, texel: usize) -> Vec<f64> {
         .collect();
     let mut channels = vec![0.0; table.channels().len()];
     for lobe in table.lobes() {
-        let [a, b] = reference_lobe(table.quantity().evaluation, lobe, &at);
+        let [a, b] = reference_lobe(table.quantity(), lobe, &at);
         for (channel, [weight_a, weight_b]) in channels.iter_mut().zip(lobe.weights()) {
             *channel += weight_a * a + weight_b * b;
         }
@@ -153,12 +153,12 @@ pub fn reference(table: &TablePlan, texel: usize) -> Vec<f64> {
 }
 
 /// A lobe's part of a texel by the reference, before its weights; NaN where it has none, which no comparison calls right.
-fn reference_lobe(evaluation: Evaluation, lobe: &Lobe, at: &BTreeMap<Variable, f64>) -> [f64; 2] {
+fn reference_lobe(quantity: &Quantity, lobe: &Lobe, at: &BTreeMap<Variable, f64>) -> [f64; 2] {
     let get = |variable| at.get(&variable).copied();
     let Some(reference) = ReferenceLobe::new(lobe, get(Variable::Roughness)) else { return [f64::NAN; 2] };
     let theta_i = get(Variable::ThetaI).unwrap_or(0.0);
     let phi_i = get(Variable::PhiI).unwrap_or(0.0);
-    match evaluation {
+    match quantity.evaluation {
         Evaluation::Value => {
             let delta_phi = match get(Variable::PhiE) {
                 Some(phi_e) => delta_phi(phi_i, phi_e),
@@ -167,12 +167,14 @@ fn reference_lobe(evaluation: Evaluation, lobe: &Lobe, at: &BTreeMap<Variable, f
             let theta_e = get(Variable::ThetaE).unwrap_or(0.0);
             reference.brdf(&Angles { theta_i, theta_e, delta_phi, phi_i }).unwrap_or([f64::NAN; 2])
         }
-        // Of the split sum it is ωe that is fixed.
-        Evaluation::Directional => match get(Variable::Mu) {
-            Some(mu) => reference.rho_dh(mu, phi_i, Fixed::Exitant),
-            None => reference.rho_dh(theta_i.cos(), phi_i, Fixed::Incident),
-        },
+        Evaluation::Directional(fixed) => {
+            // μ of the direction that an integral keeps.
+            let zenith = quantity.variables.first().and_then(|&variable| Some((variable, get(variable)?)));
+            let mu = zenith.map_or(1.0, |(variable, value)| variable.cosine(value));
+            reference.rho_dh(mu, phi_i, fixed)
+        }
         Evaluation::Hemispherical => reference.rho_hh(),
+        Evaluation::Light => [f64::NAN; 2],
     }
 }
 

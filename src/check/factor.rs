@@ -1,8 +1,9 @@
 //! The factors of a lobe, from the albedos that the reference integrates: nothing of the evaluators' tables.
 
-use super::reference::{Fixed, reference_of_albedo};
+use super::reference::reference_of_albedo;
 use crate::model::compensation::{Albedo, Factor};
 use crate::model::lobe::Lobe;
+use crate::table::quantity::FixedDirection;
 use gonio_reference::{MIN_MU, Reference, Setting, mean_of_rho_dh};
 use std::collections::HashMap;
 use std::f64::consts::PI;
@@ -57,11 +58,17 @@ impl Product {
     }
 
     /// ρ_dh of a lobe times s, with ωi fixed, or ωe.
-    pub fn rho_dh(&self, lobe: &dyn Reference, mu: f64, setting: &Setting, fixed: Fixed) -> [f64; 2] {
+    pub fn rho_dh(
+        &self,
+        lobe: &dyn Reference,
+        mu: f64,
+        setting: &Setting,
+        fixed: FixedDirection,
+    ) -> [f64; 2] {
         let mu = mu.clamp(MIN_MU, 1.0);
         match fixed {
-            Fixed::Exitant => lobe.rho_dh_times(mu, setting, &|other| self.value(other, mu)),
-            Fixed::Incident => lobe.rho_dh_times(mu, setting, &|other| self.value(mu, other)),
+            FixedDirection::Exitant => lobe.rho_dh_times(mu, setting, &|other| self.value(other, mu)),
+            FixedDirection::Incident => lobe.rho_dh_times(mu, setting, &|other| self.value(mu, other)),
         }
     }
 
@@ -69,7 +76,7 @@ impl Product {
     pub fn rho_hh(&self, lobe: &dyn Reference, setting: &Setting) -> [f64; 2] {
         let alphas = self.factors.iter().filter_map(|(_, curve)| Some(curve.as_ref()?.setting.alpha()));
         let alpha = alphas.fold(setting.alpha(), f64::max);
-        mean_of_rho_dh(|mu| self.rho_dh(lobe, mu, setting, Fixed::Incident), alpha)
+        mean_of_rho_dh(|mu| self.rho_dh(lobe, mu, setting, FixedDirection::Incident), alpha)
     }
 }
 

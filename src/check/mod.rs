@@ -13,5 +13,5 @@ pub use crate::table::Check;
 pub(crate) use cross_check::Comparison;
 pub(crate) use cross_check::{Tally, sample};
 pub use cross_check::{cross_check, reference};
-pub(crate) use reference::{Fixed, ReferenceLobe, reference_angles, reference_parameters};
+pub(crate) use reference::{ReferenceLobe, reference_angles, reference_parameters};
 pub use reference::{reference_of_model, register_reference};

@@ -11,6 +11,7 @@ use crate::model::Model;
 use crate::model::compensation::Albedo;
 use crate::model::lobe::Lobe;
 use crate::model::parameters::Parameters;
+use crate::table::quantity::FixedDirection;
 use gonio_reference::{Angles, Factors, Measure, Reference, Refused, Setting};
 use std::sync::{PoisonError, RwLock};
 
@@ -89,7 +90,7 @@ impl ReferenceLobe {
     }
 
     /// ρ_dh at a direction of incidence (μ, φ), or of exitance.
-    pub fn rho_dh(&self, mu: f64, phi: f64, fixed: Fixed) -> [f64; 2] {
+    pub fn rho_dh(&self, mu: f64, phi: f64, fixed: FixedDirection) -> [f64; 2] {
         match &self.product {
             None => self.reference.rho_dh_at(mu, phi, &self.setting),
             Some(product) => product.rho_dh(self.reference, mu, &self.setting, fixed),
@@ -114,13 +115,6 @@ impl ReferenceLobe {
     pub fn factors(&self, angles: &Angles) -> Option<Factors> {
         self.reference.factors(angles, &self.setting)
     }
-}
-
-/// The direction that an integral over the other one holds fixed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Fixed {
-    Incident,
-    Exitant,
 }
 
 /// The reference of an albedo that a factor is made of, in a row of this roughness; `None` as of a lobe.

@@ -5,13 +5,16 @@ use crate::bake::Evaluator;
 use crate::base::error::{Error, Result};
 use crate::base::timings::Stopwatch;
 use crate::base::timings::Timings;
+use crate::base::words::alternatives;
 use crate::batch::{Baked, Options, Streaming, bake_set};
 use crate::check::Check;
 use crate::cli::watch::Watch;
 use crate::cli::{HEADING, print, print_json, tell, warn};
-use crate::io::Format;
+use crate::io::target::IDENTITY;
+use crate::io::{Format, format};
 use crate::scene;
 use crate::scene::planner::{Plan, Selection};
+use crate::table::quantity;
 use serde_json::json;
 use std::mem::ManuallyDrop;
 use std::path::PathBuf;
@@ -32,16 +35,15 @@ pub struct Args {
     #[arg(long, value_name = "NAME", default_value = "auto")]
     device: DeviceChoice,
     /// Files to write for each table, separated by commas
-    #[arg(long, value_name = "F", value_delimiter = ',', default_value = "exr,png")]
-    format: Vec<Format>,
+    #[arg(long, value_name = "F", value_delimiter = ',', default_value = "exr,png", value_parser = format::find)]
+    format: Vec<&'static Format>,
     /// Texels of each table to compare with the f64 reference: a count, or all
     #[arg(long, value_name = "N", default_value = "256")]
     check: Check,
     /// Only this material and the bases that it uses
     #[arg(long, value_name = "NAME")]
     material: Option<String>,
-    /// Only this quantity: brdf, rho_dh, rho_hh or split_sum
-    #[arg(long, value_name = "Q")]
+    #[arg(long, value_name = "Q", help = only_this_quantity())]
     quantity: Option<String>,
     /// Print the plan and compute nothing
     #[arg(long)]
@@ -49,6 +51,11 @@ pub struct Args {
     /// Print the manifest on stdout, and everything for people on stderr
     #[arg(long)]
     json: bool,
+}
+
+/// The help of `--quantity`.
+fn only_this_quantity() -> String {
+    format!("Only this quantity: {}", alternatives(quantity::of_a_brdf().map(|quantity| quantity.name)))
 }
 
 const AFTER_HELP: &str = "\
@@ -114,7 +121,7 @@ pub fn run(args: &Args) -> Result<()> {
     let watch = Watch::new(2 * plan.tables.len());
     let mut formats = args.format.clone();
     formats.dedup();
-    let options = Options { formats, check: args.check, streaming: Streaming::default() };
+    let options = Options { formats, target: &IDENTITY, check: args.check, streaming: Streaming::default() };
     let baked = bake_set(&plan, &args.scene, &evaluator, out, &options, stages, &watch);
     watch.finish();
     let baked = baked?;

@@ -12,7 +12,6 @@ use crate::scene;
 use crate::scene::planner::{Plan, Selection};
 use crate::table::axis::{Axis, Variable};
 use crate::table::quantity;
-use crate::table::quantity::Evaluation;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -23,8 +22,7 @@ pub struct Args {
     /// The folder for trade.csv, trade.json and trade.png; made if it is not there
     #[arg(long, short, value_name = "DIR")]
     out: PathBuf,
-    /// Without a recipe: rho_dh, rho_hh or split_sum. With one: its first table of this quantity
-    #[arg(long, value_name = "Q")]
+    #[arg(long, value_name = "Q", help = which_quantity())]
     quantity: Option<String>,
     /// Without a recipe: the model [default: ggx]
     #[arg(long, value_name = "M", conflicts_with = "recipe")]
@@ -45,6 +43,12 @@ pub struct Args {
     /// Print trade.json on stdout, and everything for people on stderr
     #[arg(long)]
     json: bool,
+}
+
+/// The help of `--quantity`.
+fn which_quantity() -> String {
+    let integrals = quantity::integrals_in_words();
+    format!("Without a recipe: {integrals}. With one: its first table of this quantity")
 }
 
 const AFTER_HELP: &str = "\
@@ -105,11 +109,12 @@ fn table(args: &Args) -> Result<TablePlan> {
     };
     let selection = Selection { quantity: args.quantity.clone(), ..Selection::default() };
     let plan = Plan::new(&scene::read(path)?, &selection)?;
-    let integral = |table: &TablePlan| table.quantity().evaluation != Evaluation::Value;
+    let integral = |table: &TablePlan| table.quantity().is_integral();
     plan.tables.into_iter().find(integral).ok_or_else(|| {
         Error::input(format!(
-            "{}: no table of integrals; give one of rho_dh, rho_hh or split_sum",
-            path.display()
+            "{}: no table of integrals; give one of {}",
+            path.display(),
+            quantity::integrals_in_words()
         ))
     })
 }

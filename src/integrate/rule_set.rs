@@ -17,7 +17,7 @@ use crate::model::parameters::Setting;
 use crate::model::{Integral, Sampling, Slopes};
 use crate::plan::TablePlan;
 use crate::table::axis::Variable;
-use crate::table::quantity::Evaluation;
+use crate::table::quantity::{Evaluation, FixedDirection};
 use crate::table::rule::Rule;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::iter;
@@ -93,7 +93,7 @@ impl Work {
         let alphas = table.alphas(lobe);
         match table.quantity().evaluation {
             Evaluation::Value => Self { alphas, scales: scales(table, lobe), kind: values(table) },
-            Evaluation::Directional => integrals(table, lobe, alphas, &directions(table), &[1.0]),
+            Evaluation::Directional(_) => integrals(table, lobe, alphas, &directions(table), &[1.0]),
             Evaluation::Hemispherical => {
                 let tolerance = table.rule_tolerance();
                 let settings = lobe.settings(&alphas);
@@ -131,6 +131,8 @@ impl Work {
                 let weights: Vec<_> = all().map(|(k, azimuth)| weights[k] * azimuth.weight).collect();
                 integrals(table, lobe, alphas, &fixed, &weights)
             }
+            // A plan refuses light's quantities, so that there is nothing to integrate.
+            Evaluation::Light => integrals(table, lobe, alphas, &[], &[]),
         }
     }
 
@@ -187,12 +189,10 @@ impl Inner {
 
 /// (θ, φ) of the fixed direction along the table's last axes.
 fn directions(table: &TablePlan) -> Vec<[f64; 2]> {
-    let thetas: Vec<_> = match table.axis(Variable::Mu) {
-        Some(axis) => axis.values().iter().map(|mu| mu.acos()).collect(),
-        None => table.axis(Variable::ThetaI).map_or(Vec::new(), |axis| axis.values().to_vec()),
-    };
+    let zenith = table.quantity().variables.first().and_then(|&variable| table.axis(variable));
+    let zenith = zenith.into_iter().flat_map(|axis| axis.values().iter().map(|&x| axis.variable().zenith(x)));
     let phis = table.axis(Variable::PhiI).map_or(&[0.0][..], |axis| axis.values());
-    thetas.into_iter().flat_map(|theta| phis.iter().map(move |&phi| [theta, phi])).collect()
+    zenith.flat_map(|theta| phis.iter().map(move |&phi| [theta, phi])).collect()
 }
 
 fn values(table: &TablePlan) -> WorkKind {
@@ -264,8 +264,7 @@ fn integrals(table: &TablePlan, lobe: &Lobe, alphas: Vec<f64>, fixed: &[[f64; 2]
             Integral::Delta(directional) => Source::Delta(directional),
             Integral::Unbounded(_) => Source::Delta(|_, _| [f64::NAN; 2]),
         };
-        // Of the split sum it is ωe that is fixed.
-        let fixed_is_exitant = table.quantity().variables == [Variable::Mu];
+        let fixed_is_exitant = table.quantity().fixed_direction() == Some(FixedDirection::Exitant);
         let work = mapped(source).times(scales(table, lobe), fixed_is_exitant);
         return new(alphas, of(Inner::Mapped(work), weights.to_vec()));
     }

@@ -37,8 +37,8 @@ impl<'a> TableEntry<'a> {
     pub fn new(table: &'a Table, files: Files) -> Self {
         Self {
             name: &table.name,
-            quantity: &table.quantity,
-            unit: &table.unit,
+            quantity: table.quantity.name,
+            unit: table.quantity.unit,
             subject: &table.subject,
             parameters: &table.parameters,
             axes: axes(table),

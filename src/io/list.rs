@@ -2,7 +2,7 @@
 //! What was there stays until all of it is there.
 
 use crate::base::error::{Error, Result};
-use crate::io::npy;
+use crate::io::format::npy;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -105,7 +105,7 @@ impl List {
     /// An NPY file up to its first value: 128 bytes, whatever the count.
     fn npy_head(&self) -> Result<Vec<u8>> {
         let shape = [self.values / self.channels as u64, self.channels as u64];
-        let head = npy::head_of(&shape).map_err(Error::io("write", &self.path))?;
+        let head = npy::head(&shape).map_err(Error::io("write", &self.path))?;
         match head.len() {
             128 => Ok(head),
             n => Err(Error::Internal(format!("an NPY header of {n} bytes"))),

@@ -1,7 +1,8 @@
 //! The manifest as a file: reading it with suspicion, writing it to be read by people.
 
 use crate::base::error::{Error, Result};
-use crate::io::{Format, set};
+use crate::io::format::FORMATS;
+use crate::io::set;
 use serde::Serialize;
 use serde_json::Value;
 use serde_json::ser::{Formatter, PrettyFormatter, Serializer};
@@ -130,8 +131,8 @@ fn is_plain(name: &str) -> bool {
     let path = Path::new(name);
     let one = matches!(path.components().next(), Some(Component::Normal(part)) if part == name);
     let extension = path.extension().and_then(|extension| extension.to_str());
-    let formats = Format::ALL.iter().map(|format| format.name()).chain(OTHERS);
-    let ours = formats.into_iter().any(|format| extension == Some(format));
+    let mut extensions = FORMATS.iter().map(|format| format.extension).chain(OTHERS);
+    let ours = extensions.any(|format| extension == Some(format));
     one && ours && !name.starts_with('.') && !name.contains(['/', '\\', ':', '\0'])
 }
 

@@ -1,6 +1,7 @@
 //! A set of tables and its manifest, written all or nothing.
 
 use crate::base::error::{Error, Result};
+use crate::io::format::Streamed;
 use crate::io::manifest;
 use crate::io::manifest::{Listed, MANIFEST};
 use crate::io::stream;
@@ -56,9 +57,9 @@ pub struct TableSet {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Files {
     /// File names in the set's folder.
-    pub files: BTreeMap<Format, String>,
+    pub files: BTreeMap<&'static str, String>,
     /// SHA-256 of each file, in hexadecimal.
-    pub sha256: BTreeMap<Format, String>,
+    pub sha256: BTreeMap<&'static str, String>,
 }
 
 impl TableSet {
@@ -101,17 +102,22 @@ impl TableSet {
     ///
     /// # Errors
     /// When a file cannot be written, or one of that name is there which is not of the old set.
-    pub fn write(&mut self, table: &Table, formats: &[Format], provenance: &Provenance) -> Result<Files> {
+    pub fn write(
+        &mut self,
+        table: &Table,
+        formats: &[&'static Format],
+        provenance: &Provenance,
+    ) -> Result<Files> {
         let stem = self.free_stem(&table.name);
         let mut written = Files { files: BTreeMap::new(), sha256: BTreeMap::new() };
         for &format in formats {
-            let name = format!("{stem}.{format}");
+            let name = format!("{stem}.{}", format.extension);
             self.refuse_foreign(&name)?;
             let bytes = format.encode(table, provenance)?;
             save(&self.dir.join(STAGING).join(&name), &bytes)?;
-            written.sha256.insert(format, manifest::hash(&bytes));
+            written.sha256.insert(format.name, manifest::hash(&bytes));
             self.staged.insert(name.clone());
-            written.files.insert(format, name);
+            written.files.insert(format.name, name);
         }
         Ok(written)
     }
@@ -162,30 +168,30 @@ impl TableSet {
         table: &Table,
         tiles: &Tiles,
         preview: &Table,
-        formats: &[Format],
+        formats: &[&'static Format],
         provenance: &Provenance,
         tick: &mut dyn FnMut(f64) -> Result<()>,
     ) -> Result<Files> {
         let stem = self.free_stem(&table.name);
         let mut written = Files { files: BTreeMap::new(), sha256: BTreeMap::new() };
         for &format in formats {
-            let name = format!("{stem}.{format}");
+            let name = format!("{stem}.{}", format.extension);
             self.refuse_foreign(&name)?;
             let path = self.dir.join(STAGING).join(&name);
             let share = 1.0 / formats.len() as f64;
-            let sha256 = match format {
-                Format::Exr | Format::Npy => {
-                    stream::write(format, table, tiles, provenance, &path, &mut |part| tick(share * part))?
+            let sha256 = match format.streamed {
+                Streamed::Rows(begin) => {
+                    stream::write(begin, table, tiles, provenance, &path, &mut |part| tick(share * part))?
                 }
-                Format::Png => {
+                Streamed::Preview => {
                     let bytes = format.encode(preview, provenance)?;
                     save(&path, &bytes)?;
                     manifest::hash(&bytes)
                 }
             };
-            written.sha256.insert(format, sha256);
+            written.sha256.insert(format.name, sha256);
             self.staged.insert(name.clone());
-            written.files.insert(format, name);
+            written.files.insert(format.name, name);
         }
         Ok(written)
     }

@@ -4,8 +4,9 @@
 //! the files written in one go from front to back, hashed as they grow.
 
 use crate::base::error::{Error, Result};
+use crate::io::Provenance;
+use crate::io::format::BeginRows;
 use crate::io::set::explain;
-use crate::io::{Format, Provenance, exr, npy};
 use crate::table::Table;
 use sha2::{Digest, Sha256};
 use std::fs::{self, File};
@@ -63,36 +64,30 @@ fn floats(bytes: &[u8]) -> Vec<f32> {
     bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
 }
 
-/// Writes a table's file from its tiles, the bytes that [`Format::encode`] makes of the whole table.
-/// Returns their SHA-256.
+/// Writes a table's file from its tiles, row by row. Returns the SHA-256 of
+/// the file.
 pub(super) fn write(
-    format: Format,
+    begin: BeginRows,
     table: &Table,
     tiles: &Tiles,
     provenance: &Provenance,
     path: &Path,
     tick: &mut dyn FnMut(f64) -> Result<()>,
 ) -> Result<String> {
-    let (head, order) = match format {
-        Format::Exr => exr::head(table, provenance)?,
-        _ => (npy::head(table)?, Vec::new()),
-    };
+    let mut bytes = Vec::new();
+    let mut rows = begin(table, provenance, &mut bytes)?;
     let file = File::create(path).map_err(explain("write", path))?;
     let mut out = Hashed { file: BufWriter::new(file), hash: Sha256::new() };
-    out.write_all(&head).map_err(explain("write", path))?;
+    out.write_all(&bytes).map_err(explain("write", path))?;
 
     let (width, height) = table.image_size();
     let row = width * table.channels.len();
     let mut y = 0;
-    let mut bytes = Vec::new();
     for tile in tiles.each() {
         let tile = tile?;
         bytes.clear();
         for texels in tile.chunks_exact(row) {
-            match format {
-                Format::Exr => exr::line(&mut bytes, y, texels, &order),
-                _ => bytes.extend(texels.iter().flat_map(|v| v.to_le_bytes())),
-            }
+            rows.append(texels, &mut bytes);
             y += 1;
         }
         out.write_all(&bytes).map_err(explain("write", path))?;
@@ -101,6 +96,9 @@ pub(super) fn write(
     if y != height {
         return Err(Error::Internal(format!("table {}: {y} of {height} rows are in its tiles", table.name)));
     }
+    bytes.clear();
+    rows.finish(&mut bytes);
+    out.write_all(&bytes).map_err(explain("write", path))?;
     out.finish().map_err(explain("write", path))
 }
 

@@ -193,16 +193,19 @@ impl TablePlan {
     }
 
     /// The table in a layout that was chosen for bilinear look-ups.
+    #[cfg(feature = "check")]
     pub(crate) fn with_layout(self, axes: Vec<Axis>, storage: Storage, choice: Choice) -> Result<Self> {
         Self { axes, storage, bilinear: Some(choice), ..self }.checked()
     }
 
     /// The table at other samples of its own axes, for a comparison: not checked again, as nothing is baked of it.
+    #[cfg(feature = "check")]
     pub(crate) fn at_samples(&self, axes: Vec<Axis>) -> Self {
         Self { axes, ..self.clone() }.decided()
     }
 
     /// The table by the warped rule at other samples of its own axes, to another tolerance, unrounded.
+    #[cfg(feature = "check")]
     pub(crate) fn exact_at_samples(&self, axes: Vec<Axis>, tolerance: Tolerance) -> Self {
         let exact = Self {
             axes,
@@ -284,10 +287,7 @@ impl TablePlan {
     /// The plan with what follows from its tolerance.
     fn decided(mut self) -> Self {
         let tolerance = self.tolerance.get();
-        let floor = match self.quantity.evaluation {
-            Evaluation::Value => self.value_f32(),
-            _ => self.integral_f32(),
-        };
+        let floor = if self.quantity.is_value() { self.value_f32() } else { self.integral_f32() };
         let precision = if tolerance < floor { Precision::F64 } else { Precision::F32 };
         let rule_tolerance = match self.storage {
             Storage::Unorm16 => (RULE_SHARE * tolerance).min(UNORM_RULE),
@@ -313,6 +313,9 @@ impl TablePlan {
     /// Refuses what cannot be carried out.
     fn check(&self) -> Result<()> {
         let refuse = |why: String| Err(Error::input(format!("table \"{}\": {why}", self.name)));
+        if let Some(why) = self.quantity.refused() {
+            return refuse(why);
+        }
         let variables: Vec<_> = self.axes.iter().map(|axis| axis.variable()).collect();
         let swept = variables.first() == Some(&Variable::Roughness);
         let anisotropic = self.lobes.iter().any(|lobe| lobe.model().is_anisotropic());
@@ -357,7 +360,7 @@ impl TablePlan {
                 return refuse(format!("{} needs a roughness: give a value or an axis", model.name));
             }
             let alphas = self.alphas(lobe);
-            let value = self.quantity.evaluation == Evaluation::Value;
+            let value = self.quantity.is_value();
             if value && model.is_delta() {
                 return refuse(format!("{} is a delta and has no values; tabulate rho_dh", model.name));
             }
@@ -391,7 +394,7 @@ impl TablePlan {
         // Texels are indexed by usize, which has 32 bits on some targets.
         let most = if streams { MAX_STREAMED.min(usize::MAX as u64) } else { MAX_VALUES };
         if values.is_none_or(|n| n > most) {
-            let value = self.quantity.evaluation == Evaluation::Value;
+            let value = self.quantity.is_value();
             let more = match value && !streams {
                 true => {
                     format!(
@@ -436,10 +439,7 @@ impl TablePlan {
         }
         for lobe in &self.lobes {
             let model = lobe.model();
-            if !lobe.factors().is_empty()
-                && self.rule != Rule::Warped
-                && self.quantity.evaluation != Evaluation::Value
-            {
+            if !lobe.factors().is_empty() && self.rule != Rule::Warped && self.quantity.is_integral() {
                 return Err(format!(
                     "the {name} rule does not do a lobe times a factor; use the warped rule"
                 ));
@@ -450,7 +450,7 @@ impl TablePlan {
                     self.rule.samples().is_none()
                 }
                 Integral::Delta(_) => matches!(self.rule, Rule::Warped | Rule::Grid { .. }),
-                Integral::Unbounded(_) => self.quantity.evaluation == Evaluation::Value,
+                Integral::Unbounded(_) => self.quantity.is_value(),
             };
             let fits = fits && (!model.is_anisotropic() || self.rule == Rule::Warped);
             if !fits {
@@ -479,12 +479,13 @@ impl TablePlan {
             Evaluation::Value => {
                 count(self.axis(Variable::ThetaI)).saturating_mul(count(self.axis(Variable::ThetaE)))
             }
-            Evaluation::Directional => {
+            Evaluation::Directional(_) => {
                 let azimuths = count(self.axis(Variable::PhiI));
-                let fixed = self.axis(Variable::Mu).or_else(|| self.axis(Variable::ThetaI));
+                let fixed = self.quantity.variables.first().and_then(|&zenith| self.axis(zenith));
                 count(fixed).saturating_mul(azimuths).saturating_mul(nodes)
             }
             Evaluation::Hemispherical => NODES.saturating_mul(nodes),
+            Evaluation::Light => 0,
         }
     }
 
@@ -514,9 +515,7 @@ impl TablePlan {
 
     /// Whether it can be baked and written piece by piece: values, in f32 throughout.
     pub(crate) fn can_stream(&self) -> bool {
-        self.quantity.evaluation == Evaluation::Value
-            && self.precision() == Precision::F32
-            && self.stored() == Storage::F32
+        self.quantity.is_value() && self.precision() == Precision::F32 && self.stored() == Storage::F32
     }
 
     /// Refuses what is too large for one piece.
@@ -592,7 +591,7 @@ impl fmt::Display for TablePlan {
             let open = if k == 0 { " over " } else { " × " };
             write!(f, "{open}{} {} [{a:.4}, {b:.4}]", axis.variable().name(), axis.len())?;
         }
-        if self.quantity.evaluation != Evaluation::Value {
+        if self.quantity.is_integral() {
             write!(f, ", {}", self.rule)?;
         }
         if self.storage != Storage::F32 {

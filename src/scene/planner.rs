@@ -15,7 +15,7 @@ use crate::scene::{
 };
 use crate::table::axis::{Axis, Mapping, Positions, Variable};
 use crate::table::quantity;
-use crate::table::quantity::{BRDF, Evaluation, QUANTITIES, Quantity, RHO_DH};
+use crate::table::quantity::{BRDF, Quantity, RHO_DH};
 use crate::table::rule::Rule;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashSet};
@@ -166,7 +166,7 @@ impl Plan {
         }
         if let Some(only) = quantity {
             plan.tables.retain(|table| table.quantity() == only);
-            for other in QUANTITIES.into_iter().filter(|q| *q != only) {
+            for other in quantity::of_a_brdf().filter(|&other| other != only) {
                 plan.leave_out(other.name, "the selection asks for another quantity");
             }
         }
@@ -205,7 +205,7 @@ impl Plan {
             for parameters in settings {
                 let with = |lobe: &&MaterialLobe| settings_of(lobe, model).iter().any(|s| s.0 == parameters);
                 let range = Distribution::union(lobes().filter(with).filter_map(|l| l.roughness.as_ref()));
-                for quantity in QUANTITIES {
+                for quantity in quantity::of_a_brdf() {
                     let Some(axes) = self.default_axes(model.name, model, quantity, range.as_ref())? else {
                         continue;
                     };
@@ -225,8 +225,7 @@ impl Plan {
             };
             for quantity in [&BRDF, &RHO_DH] {
                 let what = format!("{}.{}", material.name, quantity.name);
-                let delta = Lobe::is_delta;
-                if quantity.evaluation == Evaluation::Value && lobes.iter().any(delta) {
+                if quantity.is_value() && lobes.iter().any(Lobe::is_delta) {
                     self.leave_out(what, "a lobe of it is a delta and has no values");
                     continue;
                 }
@@ -252,7 +251,7 @@ impl Plan {
         quantity: &Quantity,
         range: Option<&Distribution>,
     ) -> Result<Option<Vec<Axis>>> {
-        let value = quantity.evaluation == Evaluation::Value;
+        let value = quantity.is_value();
         if value && model.is_delta() {
             self.leave_out(format!("{subject}.{}", quantity.name), "a delta has no values");
             return Ok(None);
@@ -382,7 +381,7 @@ impl Plan {
 /// Why a model has no integrals, if it has none and this is one.
 fn no_table(model: &Model, quantity: &Quantity) -> Option<&'static str> {
     match model.integral {
-        Integral::Unbounded(why) if quantity.evaluation != Evaluation::Value => Some(why),
+        Integral::Unbounded(why) if quantity.is_integral() => Some(why),
         _ => None,
     }
 }
@@ -394,7 +393,7 @@ fn natural_axes(quantity: &Quantity, anisotropic: bool) -> Result<Vec<Axis>> {
 }
 
 fn natural_axis(quantity: &Quantity, anisotropic: bool, variable: Variable) -> Result<Axis> {
-    let count = match (quantity.evaluation, variable) {
+    let count = match (quantity.is_value(), variable) {
         // √μ on nodes: bilinear look-ups are then eight times closer than on texel centres of μ.
         (_, Variable::Mu) => {
             return Axis::new(variable, MU, [0.0, 1.0], Positions::Nodes, Mapping::Sqrt);
@@ -403,14 +402,14 @@ fn natural_axis(quantity: &Quantity, anisotropic: bool, variable: Variable) -> R
         (_, Variable::PhiI) => {
             return Axis::new(variable, PHI, [0.0, FRAC_PI_2], Positions::Nodes, Mapping::Linear);
         }
-        (Evaluation::Value, _) if anisotropic => match variable {
+        (true, _) if anisotropic => match variable {
             Variable::ThetaI => ANISOTROPIC_GRID[0],
             Variable::ThetaE => ANISOTROPIC_GRID[1],
             _ => ANISOTROPIC_GRID[2],
         },
-        (Evaluation::Value, Variable::ThetaI) => VALUE_GRID[0],
-        (Evaluation::Value, Variable::ThetaE) => VALUE_GRID[1],
-        (Evaluation::Value, Variable::DeltaPhi) => VALUE_GRID[2],
+        (true, Variable::ThetaI) => VALUE_GRID[0],
+        (true, Variable::ThetaE) => VALUE_GRID[1],
+        (true, Variable::DeltaPhi) => VALUE_GRID[2],
         (_, Variable::Roughness) => ROUGHNESS,
         _ => THETA,
     };

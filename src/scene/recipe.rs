@@ -9,7 +9,8 @@ use crate::model::compensation::{Albedo, Compensation, Factor};
 use crate::model::{ALPHA_MIN_VALUE, Component, Integral, MODELS, Model, Shape};
 use crate::scene::{Distribution, Material, MaterialLobe, Scene, SubjectRequest, TableRequest, Weights};
 use crate::table::axis::{Axis, MAX_COUNT, Mapping, Positions, Variable};
-use crate::table::quantity::{Evaluation, QUANTITIES};
+use crate::table::quantity;
+use crate::table::quantity::{QUANTITIES, Quantity};
 use crate::table::rule::{MAX_GAUSS, MAX_GRID, MAX_SAMPLES, Rule};
 use crate::table::storage::Storage;
 use document::{Document, Fields, Item};
@@ -228,13 +229,17 @@ fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
     keys.extend(own.iter().filter(|&&name| name != "roughness"));
     let fields = item.table(&keys)?;
     let name = fields.get("name").map(table_name).transpose()?;
-    let quantity = fields.require("quantity")?;
-    let quantity = quantity.one_of(QUANTITIES.iter().map(|q| (q.name, q)))?;
+    let quantity = quantity_of(&fields.require("quantity")?)?;
     let (subject, varies) = subject(&fields, materials, &own)?;
 
     let (mut axes, mut auto) = (Vec::new(), Vec::new());
     if let Some(item) = fields.get("axes") {
-        let variables = quantity.variables.iter().chain(quantity.about).copied().chain([Variable::Roughness]);
+        let variables = quantity
+            .variables
+            .iter()
+            .chain(quantity.anisotropic_variables)
+            .copied()
+            .chain([Variable::Roughness]);
         let variables: Vec<_> = variables.map(|v| (v.name(), v)).collect();
         for axis_item in item.entries()? {
             let variable = axis_item.key_one_of(variables.iter().copied())?;
@@ -242,7 +247,7 @@ fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
                 varies.map_err(|why| axis_item.refuse(why))?;
             }
             if let Some(range) = auto_range(&axis_item, variable)? {
-                if quantity.evaluation == Evaluation::Value {
+                if quantity.is_value() {
                     return Err(axis_item.refuse("only integrals have auto axes; give a count"));
                 }
                 let varying = varying_roughness(&fields, materials, variable);
@@ -267,6 +272,17 @@ fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
         tolerance: fields.get("tolerance").map(|t| t.number_in(TOLERANCES)).transpose()?,
         place: item.place(),
     })
+}
+
+/// The quantity of a table: one of a BRDF. One of light is known and refused.
+fn quantity_of(item: &Item) -> Result<&'static Quantity> {
+    let given = item.text()?;
+    if let Some(light) = QUANTITIES.iter().find(|quantity| quantity.name == given)
+        && let Some(why) = light.refused()
+    {
+        return Err(item.refuse(&why));
+    }
+    item.one_of(quantity::of_a_brdf().map(|quantity| (quantity.name, quantity)))
 }
 
 /// What the table is of, and whether it can have a roughness axis; if not, why.

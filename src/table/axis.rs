@@ -45,6 +45,16 @@ impl Variable {
         Self::Harmonic,
     ];
 
+    /// The zenith angle that a value of a direction's θ or μ stands for.
+    pub(crate) fn zenith(self, value: f64) -> f64 {
+        if self == Self::Mu { value.acos() } else { value }
+    }
+
+    /// The cosine of that angle.
+    pub(crate) fn cosine(self, value: f64) -> f64 {
+        if self == Self::Mu { value } else { value.cos() }
+    }
+
     /// The name in recipes, files and manifests.
     pub fn name(self) -> &'static str {
         match self {
@@ -241,7 +251,7 @@ impl Axis {
         self.range
     }
 
-    /// The values, in the variable's unit, strictly increasing.
+    /// The values, in the variable's unit, strictly increasing unless a target reversed them.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
@@ -254,14 +264,28 @@ impl Axis {
         Self::new(self.variable, count, self.range, self.positions, self.mapping)
     }
 
+    #[cfg(feature = "check")]
     /// The axis at some values within its range, which need not increase: for comparisons, not for tables that are baked.
     pub(crate) fn at_values(&self, values: Vec<f64>) -> Self {
         Self { positions: Positions::Values, mapping: Mapping::Linear, values, ..*self }
     }
 
+    #[cfg(feature = "batch")]
     /// The axis at some of its samples, by their indices: a preview's.
     pub(crate) fn thinned(&self, indices: &[usize]) -> Self {
         Self { values: indices.iter().map(|&k| self.values[k]).collect(), ..*self }
+    }
+
+    /// The same samples from the last to the first, for readers whose axis runs down: the one axis whose values
+    /// decrease. A square-root mapping has no reversed form, so that its values are listed.
+    pub(crate) fn reversed(&self) -> Self {
+        let [a, b] = self.range;
+        let (mapping, positions) = match self.mapping {
+            Mapping::Linear => (self.mapping, self.positions),
+            Mapping::Sqrt => (Mapping::Linear, Positions::Values),
+        };
+        let values = self.values.iter().rev().copied().collect();
+        Self { variable: self.variable, mapping, positions, range: [b, a], values }
     }
 
     /// Number of samples.

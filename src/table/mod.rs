@@ -11,6 +11,7 @@ pub use check::Check;
 
 use crate::base::error::{Error, Result};
 use crate::table::axis::Axis;
+use crate::table::quantity::Quantity;
 use crate::table::report::Choice;
 use crate::table::report::InterpolationError;
 use crate::table::storage::Storage;
@@ -24,10 +25,8 @@ use std::fmt::Display;
 pub struct Table {
     /// Unique in its set; also the stem of its files.
     pub name: String,
-    /// The name of the quantity: `brdf`, `rho_dh`, …
-    pub quantity: String,
-    /// The unit of the values: `sr⁻¹` or `1`.
-    pub unit: String,
+    /// What the values are, and in which unit.
+    pub quantity: &'static Quantity,
     /// What was tabulated: a basis (`ggx`) or a material's name.
     pub subject: String,
     /// Parameters that are the same for the whole table, by name.
@@ -244,7 +243,7 @@ impl Table {
         (0..self.channels.len()).map(|channel| self.value(texel, channel)).collect()
     }
 
-    /// Refuses a table with a value that is not finite or is negative: the device may not say so
+    /// Refuses a table with a value that its quantity cannot have, such as NaN: the device may not say so
     /// itself (WGSL lets an implementation assume that NaN does not occur), so the host looks.
     pub fn check_sane(&self) -> Result<()> {
         match &self.values {
@@ -259,13 +258,15 @@ impl Table {
         T: Copy + Into<f64> + Display,
     {
         let channels = self.channels.len();
-        let insane = |&v: &T| !v.into().is_finite() || v.into() < 0.0;
-        let Some(at) = values.iter().position(insane) else { return Ok(()) };
+        let Some(at) = values.iter().position(|&value| !self.quantity.allows(value.into())) else {
+            return Ok(());
+        };
         Err(Error::Promise(format!(
-            "table {}: {} at {}; a BRDF is finite and non-negative",
+            "table {}: {} at {}; {}",
             self.name,
             values[at],
             self.place(texel + at / channels),
+            self.quantity.allowed(),
         )))
     }
 

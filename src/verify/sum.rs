@@ -5,7 +5,7 @@ use crate::bake::{Evaluator, Unobserved};
 use crate::base::error::{Error, Result};
 use crate::base::precision::{INTEGRAL_F32, VALUE_F32};
 use crate::base::timings::Timings;
-use crate::check::{Check, Fixed, ReferenceLobe, reference_angles};
+use crate::check::{Check, ReferenceLobe, reference_angles};
 use crate::integrate::scale::Scale;
 use crate::model::compensation::{Compensation, Factor};
 use crate::model::lobe::Lobe;
@@ -16,6 +16,7 @@ use crate::scene::Material;
 use crate::scene::planner::constant_lobes;
 use crate::table::Table;
 use crate::table::axis::{Axis, Variable};
+use crate::table::quantity::FixedDirection;
 use crate::table::quantity::RHO_DH;
 use crate::verify::{Angles, Declared, FAINT, Parameter, Subject, Symmetry, Tolerances, albedo};
 use std::cell::OnceCell;
@@ -193,7 +194,7 @@ impl<'a> Sum<'a> {
         let mut rho = [0.0; CHANNELS];
         for lobe in &(self.lobes)(setting).ok()? {
             let mu = theta_i.cos().max(0.0);
-            let [a, b] = ReferenceLobe::new(lobe, None)?.rho_dh(mu, 0.0, Fixed::Incident);
+            let [a, b] = ReferenceLobe::new(lobe, None)?.rho_dh(mu, 0.0, FixedDirection::Incident);
             for (rho, [weight_a, weight_b]) in rho.iter_mut().zip(lobe.weights()) {
                 *rho += weight_a * a + weight_b * b;
             }

@@ -10,7 +10,8 @@ use gonio::base::precision::Precision;
 use gonio::base::quadrature::gauss_legendre;
 use gonio::base::timings::Timings;
 use gonio::check::Check;
-use gonio::io::{Format, Provenance, verify};
+use gonio::io::format::EXR;
+use gonio::io::{Provenance, verify};
 use gonio::light::bake::{Order, lobes_of};
 use gonio::light::exitant::{Integrated, View, prefiltered, radiance, radiosity, split_sum};
 use gonio::light::harmonics::{TRUNCATION, coefficients, convolved, evaluate};
@@ -526,7 +527,7 @@ fn exr(dir: &Path, name: &str, width: usize, height: usize, texels: Vec<f32>) ->
         order(&Evaluator::Cpu, &light, Check::Sample(0)).irradiance(axes, &mut Timings::default()).unwrap();
     let table = Table { values: texels.into(), ..table };
     let path = dir.join(name);
-    std::fs::write(&path, Format::Exr.encode(&table, &Provenance::new()).unwrap()).unwrap();
+    std::fs::write(&path, EXR.encode(&table, &Provenance::new()).unwrap()).unwrap();
     path
 }
 

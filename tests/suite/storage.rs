@@ -6,7 +6,8 @@ use crate::common::{device, listed, model, reference_model, with_alpha};
 use gonio::bake::{Evaluator, Unobserved, within_tolerance};
 use gonio::base::timings::Timings;
 use gonio::check::Check;
-use gonio::io::{Format, Provenance, TableEntry, TableSet};
+use gonio::io::format::{EXR, NPY};
+use gonio::io::{Provenance, TableEntry, TableSet};
 use gonio::plan::TablePlan;
 use gonio::scene;
 use gonio::scene::planner::{Plan, Selection};
@@ -48,7 +49,7 @@ fn files_hold_the_nearest_representable_value() {
         for (stored, value) in table.values.iter().zip(exact.values.iter()) {
             assert!((stored - value).abs() <= step(value) + 1e-4 + 1e-6, "{storage:?}: {stored} for {value}");
         }
-        let npy = Format::Npy.encode(&table, &Provenance::new()).unwrap();
+        let npy = NPY.encode(&table, &Provenance::new()).unwrap();
         let (descr, shape, bytes) = readers::npy_raw(&npy).unwrap();
         assert_eq!(shape, [7, 9, 2]);
         let words = bytes.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]]));
@@ -60,7 +61,7 @@ fn files_hold_the_nearest_representable_value() {
         // A table in memory is f32: k / 65535 is off by its rounding there.
         assert!(read.iter().zip(table.values.iter()).all(|(a, b)| (a - b).abs() <= 6e-8), "{storage:?}");
 
-        let exr = readers::exr(&Format::Exr.encode(&table, &Provenance::new()).unwrap()).unwrap();
+        let exr = readers::exr(&EXR.encode(&table, &Provenance::new()).unwrap()).unwrap();
         assert_eq!(exr.text("gonio:storage"), storage.name());
         assert_eq!(exr.half, storage == Storage::F16);
         for (c, name) in table.channels.iter().enumerate() {
@@ -71,7 +72,7 @@ fn files_hold_the_nearest_representable_value() {
         within_tolerance(&plan, &table).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let mut set = TableSet::create(folder.path()).unwrap();
-        let files = set.write(&table, &[Format::Npy], &Provenance::new()).unwrap();
+        let files = set.write(&table, &[&NPY], &Provenance::new()).unwrap();
         let entry = json!(TableEntry::new(&table, files));
         assert_eq!(entry["storage"], json!(storage.name()));
         assert_eq!(entry["scale"].is_null(), storage == Storage::F16);

@@ -7,7 +7,8 @@ use gonio::bake::{Evaluator, Observer, Unobserved};
 use gonio::base::timings::Timings;
 use gonio::batch::{Baked, Options, Streaming, bake_set};
 use gonio::check::Check;
-use gonio::io::Format;
+use gonio::io::format::FORMATS;
+use gonio::io::target::IDENTITY;
 use gonio::scene::planner::{Plan, Selection};
 use gonio::table::storage::Storage;
 use gonio::{Result, scene};
@@ -62,7 +63,7 @@ fn bake_recipe(
     observer: &dyn Observer,
 ) -> Result<Baked> {
     let plan = Plan::new(&scene::read(recipe)?, &Selection::default())?;
-    let options = Options { formats: Format::ALL.to_vec(), check, streaming };
+    let options = Options { formats: FORMATS.to_vec(), target: &IDENTITY, check, streaming };
     bake_set(&plan, recipe, evaluator, out, &options, Timings::default(), observer)
 }
 
@@ -70,7 +71,7 @@ fn bake_recipe(
 fn files(dir: &Path) -> BTreeMap<String, Vec<u8>> {
     let names = fs::read_dir(dir).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
     names
-        .filter(|name| Format::ALL.iter().any(|format| name.ends_with(format.name())))
+        .filter(|name| FORMATS.iter().any(|format| name.ends_with(format.extension)))
         .map(|name| (name.clone(), fs::read(dir.join(name)).unwrap()))
         .collect()
 }

@@ -14,7 +14,6 @@ use crate::plan::TablePlan;
 use crate::shader::{Kernel, QUAD_FACTORS, VALUE_WINDOW, compose, validate};
 use crate::table::Values;
 use crate::table::axis::Variable;
-use crate::table::quantity::Evaluation;
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -463,7 +462,7 @@ impl Baker {
 }
 
 fn is_value(table: &TablePlan) -> bool {
-    table.quantity().evaluation == Evaluation::Value
+    table.quantity().is_value()
 }
 
 /// A count as the device takes it.

@@ -3,8 +3,10 @@
 
 use crate::base::angles::Angles;
 use crate::base::error::Result;
-use crate::io::{Format, Provenance, write_together};
+use crate::io::format::PNG;
+use crate::io::{Provenance, write_together};
 use crate::table::axis::{Axis, Variable};
+use crate::table::quantity::{BRDF, Quantity, RHO_DH};
 use crate::table::storage::Storage;
 use crate::table::{ErrorKind, Table, TableError};
 use crate::verify::{FAINT, Finding, Parameter, Report, Subject};
@@ -17,13 +19,20 @@ const LINES: usize = 6;
 const ANGLES: usize = 181;
 const SIDE: usize = 181;
 
+/// The quantities of the pictures, by the names that their labels have.
+static ALBEDO: Quantity = Quantity { name: "ρ_dh", ..RHO_DH };
+static DEVIATION: Quantity =
+    Quantity {
+        name: "error", unit: "1", summary: "|f − reference| / reference", is_promised: false, ..BRDF
+    };
+
 /// Writes `STEM.rho_dh.png`, and `STEM.error.png` where there are values; returns which.
 pub fn write(dir: &Path, stem: &str, subject: &mut dyn Subject, report: &Report) -> Result<Vec<PathBuf>> {
     let tables = [furnace(subject, report)?, errors(subject, report)?];
     let mut files = Vec::new();
     for (table, what) in tables.into_iter().zip(["rho_dh", "error"]) {
         if let Some(table) = table {
-            files.push((format!("{stem}.{what}.png"), Format::Png.encode(&table, &Provenance::new())?));
+            files.push((format!("{stem}.{what}.png"), PNG.encode(&table, &Provenance::new())?));
         }
     }
     write_together(dir, &files)?;
@@ -61,7 +70,7 @@ fn furnace(subject: &mut dyn Subject, report: &Report) -> Result<Option<Table>> 
     };
     let fixed = pinned(&parameters, &base, free);
     let name = free.map_or("furnace".into(), |k| format!("furnace, a line for each {}", parameters[k].name));
-    Ok(Some(table(&name, "ρ_dh", report, vec![theta], lines, values, fixed, None)))
+    Ok(Some(table(&name, &ALBEDO, report, vec![theta], lines, values, fixed, None)))
 }
 
 /// |f − reference| / reference, the largest of the channels.
@@ -86,7 +95,7 @@ fn errors(subject: &mut dyn Subject, report: &Report) -> Result<Option<Table>> {
     let mut fixed = pinned(subject.parameters(), &base, None);
     fixed.insert("δφ [rad]".into(), delta_phi);
     let channel = vec!["relative error".to_owned()];
-    Ok(Some(table("agreement", "error", report, axes, channel, errors, fixed, finding.deviation)))
+    Ok(Some(table("agreement", &DEVIATION, report, axes, channel, errors, fixed, finding.deviation)))
 }
 
 /// The setting of a promise's worst input.
@@ -104,7 +113,7 @@ fn pinned(parameters: &[Parameter], setting: &[f64], but: Option<usize>) -> BTre
 #[allow(clippy::too_many_arguments)] // what a picture says
 fn table(
     name: &str,
-    quantity: &str,
+    quantity: &'static Quantity,
     report: &Report,
     axes: Vec<Axis>,
     channels: Vec<String>,
@@ -120,8 +129,7 @@ fn table(
     };
     Table {
         name: name.into(),
-        quantity: quantity.into(),
-        unit: "1".into(),
+        quantity,
         subject: report.subject.clone(),
         parameters,
         axes,

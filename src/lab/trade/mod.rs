@@ -21,7 +21,7 @@ use crate::base::precision::Precision;
 use crate::base::timings::Stopwatch;
 use crate::check;
 use crate::plan::TablePlan;
-use crate::table::quantity::Evaluation;
+use crate::table::quantity;
 use crate::table::storage::Storage;
 use candidates::{Candidate, candidates};
 use rayon::prelude::*;
@@ -145,9 +145,9 @@ pub fn measure(
     options: &Options,
     observer: &dyn Observer,
 ) -> Result<Trade> {
-    if table.quantity().evaluation == Evaluation::Value {
-        let why =
-            "values are not integrated and have no methods to compare; give rho_dh, rho_hh or split_sum";
+    if table.quantity().is_value() {
+        let integrals = quantity::integrals_in_words();
+        let why = format!("values are not integrated and have no methods to compare; give {integrals}");
         return Err(Error::input(format!("table \"{}\": {why}", table.name())));
     }
     // Each point has a storage of its own.

@@ -5,11 +5,12 @@ use crate::base::error::{Error, Result};
 use crate::base::timings::Timings;
 use crate::check::Check;
 use crate::light::Light;
-use crate::light::bake::{IRRADIANCE, Order, Values, normals, timed};
+use crate::light::bake::{Order, Values, normals, timed};
 use crate::light::harmonics;
 use crate::light::harmonics::{Coefficients, Factors, TRUNCATION};
 use crate::table::Table;
 use crate::table::axis::{Axis, Variable};
+use crate::table::quantity::{Quantity, SH, SH_IRRADIANCE};
 use gonio_reference::light as reference;
 
 /// Roundings of a term on the device, one after the other: of its two factors and products, and of sums of 16 terms and of
@@ -42,7 +43,7 @@ impl Order<'_> {
             false => ("f64", 1e-11),
         };
         let axes = [Axis::listed(Variable::Harmonic, (0..9).map(f64::from).collect())?];
-        let table = |name: &str, unit: &str, values: &Coefficients, truth: &Coefficients| {
+        let table = |quantity: &'static Quantity, values: &Coefficients, truth: &Coefficients| {
             let rule = if let Light::Map(_) = self.light { "cells in closed form" } else { "closed form" };
             let values = Values {
                 rgb: values.to_vec(),
@@ -56,7 +57,7 @@ impl Order<'_> {
                 Check::Sample(0) => Vec::new(),
                 _ => truth.iter().copied().enumerate().collect(),
             };
-            self.table([name, unit, self.name], &axes, values, 1.0, &truths)
+            self.table(quantity, self.name, &axes, values, 1.0, &truths)
         };
         timed(&mut stages.check, || {
             let convolved = harmonics::convolved(&radiance);
@@ -72,8 +73,8 @@ impl Order<'_> {
                 _ => reference::harmonics(&self.light.to_reference()?),
             };
             let tables = [
-                table("sh", IRRADIANCE, &radiance, &truth)?,
-                table("sh_irradiance", IRRADIANCE, &convolved, &harmonics::convolved(&truth))?,
+                table(&SH, &radiance, &truth)?,
+                table(&SH_IRRADIANCE, &convolved, &harmonics::convolved(&truth))?,
             ];
             Ok((tables, off))
         })

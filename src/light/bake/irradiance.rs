@@ -3,13 +3,12 @@
 use crate::base::error::Result;
 use crate::base::timings::Stopwatch;
 use crate::base::timings::Timings;
-use crate::light::bake::{
-    FLOOR, IRRADIANCE, Order, Truths, Values, largest, normals, reference_frames, timed,
-};
+use crate::light::bake::{FLOOR, Order, Truths, Values, largest, normals, reference_frames, timed};
 use crate::light::irradiance::{Prepared, in_closed_form};
 use crate::light::{Environment, Light};
 use crate::table::Table;
 use crate::table::axis::Axis;
+use crate::table::quantity::IRRADIANCE;
 use gonio_reference::light as reference;
 
 /// Pieces of a column that the horizon crosses, at most.
@@ -30,7 +29,7 @@ impl Order<'_> {
         self.observer.begin("checking irradiance");
         timed(&mut stages.check, || {
             let truths = self.irradiance_truths(&axes)?;
-            self.light_table(["irradiance", IRRADIANCE, self.name], &axes, values, &truths)
+            self.table(&IRRADIANCE, self.name, &axes, values, FLOOR, &truths)
         })
     }
 

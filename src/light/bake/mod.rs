@@ -15,8 +15,9 @@ use crate::model::lobe::Lobe;
 use crate::scene::planner::constant_lobes;
 use crate::scene::{Distribution, Material};
 use crate::table::axis::Axis;
+use crate::table::quantity::Quantity;
 use crate::table::storage::Storage;
-use crate::table::{ErrorKind, Table, TableError};
+use crate::table::{Table, TableError};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -86,10 +87,15 @@ impl Order<'_> {
         found.collect()
     }
 
-    /// The table, looked at and compared with what is known of it, relative to the value or to `floor` of the largest.
+    /// The table of a quantity of a subject, compared with what is known of it, relative to the value or to `floor` of
+    /// the largest.
+    ///
+    /// # Errors
+    /// When a value is one that the quantity cannot have.
     fn table(
         &self,
-        [name, unit, subject]: [&str; 3],
+        quantity: &'static Quantity,
+        subject: &str,
         axes: &[Axis],
         values: Values,
         floor: f64,
@@ -98,15 +104,14 @@ impl Order<'_> {
         let Values { rgb: values, rule, precision, estimate, seconds } = values;
         let floor = floor * largest(&values);
         let stored: Vec<f32> = values.as_flattened().iter().map(|&x| x as f32).collect();
-        let mut tally = Tally::new(TableError::unmeasured(ErrorKind::Relative, Some(floor), estimate));
+        let mut tally = Tally::new(TableError::unmeasured(quantity.error, Some(floor), estimate));
         for (texel, truth) in truths {
             let channels = stored[3 * texel..].iter().map(|&x| f64::from(x));
             tally.add(axes, *texel, truth.iter().zip(channels).map(|(&truth, value)| (value, truth)));
         }
-        Ok(Table {
-            name: name.into(),
-            quantity: name.into(),
-            unit: unit.into(),
+        let table = Table {
+            name: quantity.name.into(),
+            quantity,
             subject: subject.into(),
             parameters: BTreeMap::new(),
             axes: axes.to_vec(),
@@ -118,32 +123,18 @@ impl Order<'_> {
             precision: precision.into(),
             error: tally.finish(),
             seconds,
-        })
-    }
-
-    /// The same of what is not negative: all but harmonics.
-    fn light_table(
-        &self,
-        words: [&str; 3],
-        axes: &[Axis],
-        values: Values,
-        truths: &[(usize, [f64; 3])],
-    ) -> Result<Table> {
-        let table = self.table(words, axes, values, FLOOR, truths)?;
-        table.check_sane().map_err(|error| match error {
-            Error::Promise(why) => Error::Promise(why.replace("a BRDF is", "light is")),
-            error => error,
-        })?;
+        };
+        table.check_sane()?;
         Ok(table)
     }
 
-    /// Whether a table meets the tolerance, as far as it was measured.
+    /// Whether a table meets the tolerance, as far as it was measured. Of an approximation nothing is promised.
     ///
     /// # Errors
     /// [`Error::Promise`] with the worst texel.
     pub fn within_tolerance(&self, table: &Table) -> Result<()> {
         let off = table.error.measured_max.into_iter().chain(table.error.estimate).fold(0.0, f64::max);
-        if off <= self.tolerance {
+        if off <= self.tolerance || !table.quantity.is_promised {
             return Ok(());
         }
         Err(Error::Promise(format!(
@@ -152,9 +143,6 @@ impl Order<'_> {
         )))
     }
 }
-
-const IRRADIANCE: &str = "W m⁻²";
-const RADIANCE: &str = "W sr⁻¹ m⁻²";
 
 /// The lobes of a material, at a roughness if one is given in place of its own.
 ///

@@ -3,16 +3,15 @@
 use crate::base::angles::delta_phi;
 use crate::base::error::Result;
 use crate::base::timings::Timings;
-use crate::check::{Fixed, ReferenceLobe};
-use crate::light::bake::{
-    MARGIN, Order, RADIANCE, Values, estimate, frames, lobes_of, reference_frames, timed,
-};
+use crate::check::ReferenceLobe;
+use crate::light::bake::{FLOOR, MARGIN, Order, Values, estimate, frames, lobes_of, reference_frames, timed};
 use crate::light::exitant;
 use crate::light::exitant::View;
 use crate::model::lobe::Lobe;
 use crate::scene::Material;
 use crate::table::Table;
 use crate::table::axis::{Axis, Variable};
+use crate::table::quantity::{FixedDirection, RADIANCE, RADIANCE_SPLIT_SUM};
 use gonio_reference::{Angles, light as reference};
 
 impl Order<'_> {
@@ -89,12 +88,11 @@ impl Order<'_> {
                 let Some(references) = &references[texel / views.len()] else { return [f64::NAN; 3] };
                 references.le(&light, frame, [theta_e, phi_e], seen)
             })?;
-            let exact = self.light_table(["radiance", RADIANCE, &subject], &axes, exact, &truths)?;
+            let exact = self.table(&RADIANCE, &subject, &axes, exact, FLOOR, &truths)?;
             // It is held to the exact one, all of it.
             let known: Vec<_> =
                 (0..exact.texels()).map(|k| (k, std::array::from_fn(|c| exact.value(k, c)))).collect();
-            let mut split =
-                self.light_table(["radiance_split_sum", RADIANCE, &subject], &axes, split, &known)?;
+            let mut split = self.table(&RADIANCE_SPLIT_SUM, &subject, &axes, split, FLOOR, &known)?;
             split.error.against = Some("the exact radiance".into());
             Ok([exact, split])
         })
@@ -141,7 +139,8 @@ impl<'a> References<'a> {
         if !self.deltas.is_empty() {
             let radiances = light.radiances(frame.mirror(theta_e, phi_e));
             let here = if radiances.contains(&seen) { Some(seen) } else { radiances.first().copied() };
-            let mirrored = weighed(&self.deltas, |lobe| lobe.rho_dh(theta_e.cos(), 0.0, Fixed::Exitant));
+            let mirrored =
+                weighed(&self.deltas, |lobe| lobe.rho_dh(theta_e.cos(), 0.0, FixedDirection::Exitant));
             (0..3).for_each(|c| sum[c] += here.map_or(f64::NAN, |radiance| radiance[c]) * mirrored[c]);
         }
         sum

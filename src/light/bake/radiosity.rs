@@ -2,16 +2,17 @@
 
 use crate::base::error::Result;
 use crate::base::timings::Timings;
-use crate::check::{Check, Fixed, ReferenceLobe};
+use crate::check::{Check, ReferenceLobe};
 use crate::light::bake::radiance::weighed;
 use crate::light::bake::{
-    IRRADIANCE, MARGIN, Order, Truths, Values, estimate, frames, lobes_of, reference_frames, timed,
+    FLOOR, MARGIN, Order, Truths, Values, estimate, frames, lobes_of, reference_frames, timed,
 };
 use crate::light::exitant;
 use crate::model::lobe::Lobe;
 use crate::scene::Scene;
 use crate::table::Table;
 use crate::table::axis::Axis;
+use crate::table::quantity::{FixedDirection, RADIOSITY, REFLECTED_SHARE};
 use gonio_reference::light as reference;
 
 impl Order<'_> {
@@ -60,8 +61,8 @@ impl Order<'_> {
             let shares: Vec<_> =
                 m.iter().zip(&e).map(|(&(texel, m), &(_, e))| (texel, share(m, e))).collect();
             Ok([
-                self.light_table(["radiosity", IRRADIANCE, &subject], &axes, radiosity, &m)?,
-                self.light_table(["reflected_share", "1", &subject], &axes, ratio, &shares)?,
+                self.table(&RADIOSITY, &subject, &axes, radiosity, FLOOR, &m)?,
+                self.table(&REFLECTED_SHARE, &subject, &axes, ratio, FLOOR, &shares)?,
             ])
         })
     }
@@ -74,7 +75,7 @@ impl Order<'_> {
             return Ok(Vec::new());
         };
         let albedo = reference::Albedo::new(&|theta_i: f64| {
-            weighed(&references, |lobe| lobe.rho_dh(theta_i.cos(), 0.0, Fixed::Incident))
+            weighed(&references, |lobe| lobe.rho_dh(theta_i.cos(), 0.0, FixedDirection::Incident))
         });
         let (light, frames) = (self.light.to_reference()?, reference_frames(&axes[0], &axes[1]));
         self.truths(axes, lobes, &|texel| reference::radiosity(&light, &frames[texel], &albedo))

@@ -1,6 +1,7 @@
 //! OpenEXR files: 32-bit float, or 16-bit where the table is stored so, named channels, uncompressed scanlines, all else as attributes.
 
 use crate::base::error::{Error, Result};
+use crate::io::format::{Format, RowWriter, Streamed};
 use crate::io::{Provenance, entry};
 use crate::table::Table;
 use crate::table::storage::Storage;
@@ -16,8 +17,18 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::Cursor;
 
+/// OpenEXR: 32-bit float (16-bit for tables in f16), named channels, uncompressed scanlines; width is the last axis,
+/// height the product of the others, row 0 the first value; axes and provenance as attributes.
+pub static EXR: Format = Format {
+    name: "exr",
+    extension: "exr",
+    summary: "OpenEXR: named channels in float, axes and provenance as attributes",
+    encode,
+    streamed: Streamed::Rows(begin),
+};
+
 /// The bytes of the file.
-pub(super) fn encode(table: &Table, provenance: &Provenance) -> Result<Vec<u8>> {
+fn encode(table: &Table, provenance: &Provenance) -> Result<Vec<u8>> {
     let fault = |why: &dyn std::fmt::Display| Error::Internal(format!("table {}: EXR: {why}", table.name));
     let (stride, values) = (table.channels.len(), table.values.to_f32());
     let channels = table.channels.iter().enumerate().map(|(c, name)| {
@@ -39,9 +50,9 @@ pub(super) fn encode(table: &Table, provenance: &Provenance) -> Result<Vec<u8>> 
     Ok(bytes)
 }
 
-/// The file up to its first scanline, for a table whose values come later, and the channels in the
-/// file's order: header, then the offset of each scanline, which are known as nothing is compressed.
-pub(super) fn head(table: &Table, provenance: &Provenance) -> Result<(Vec<u8>, Vec<usize>)> {
+/// The file up to its first scanline: header, then the offset of each scanline, which are known as nothing is
+/// compressed.
+fn begin(table: &Table, provenance: &Provenance, file: &mut Vec<u8>) -> Result<Box<dyn RowWriter>> {
     let fault = |why: &dyn std::fmt::Display| Error::Internal(format!("table {}: EXR: {why}", table.name));
     let channel = |name: &String| AnyChannel::new(text(name), FlatSamples::F32(Vec::new()));
     let channels = AnyChannels::sort(table.channels.iter().map(channel).collect());
@@ -66,15 +77,26 @@ pub(super) fn head(table: &Table, provenance: &Provenance) -> Result<(Vec<u8>, V
     bytes.extend((0..height).flat_map(|y| ((first + y * line) as u64).to_le_bytes()));
     let mut order: Vec<_> = (0..table.channels.len()).collect();
     order.sort_by_key(|&c| text(&table.channels[c]));
-    Ok((bytes, order))
+    file.extend(bytes);
+    Ok(Box::new(Scanlines { y: 0, order }))
 }
 
-/// Appends a scanline: its y, its size, and one channel after the other.
-pub(super) fn line(out: &mut Vec<u8>, y: usize, texels: &[f32], order: &[usize]) {
-    out.extend((y as i32).to_le_bytes());
-    out.extend((4 * texels.len() as i32).to_le_bytes());
-    for &c in order {
-        out.extend(texels.iter().skip(c).step_by(order.len()).flat_map(|v| v.to_le_bytes()));
+/// Scanlines, one after the other.
+struct Scanlines {
+    y: i32,
+    /// The table's channels in the file's order.
+    order: Vec<usize>,
+}
+
+impl RowWriter for Scanlines {
+    /// A scanline is its y, its size, and one channel after the other.
+    fn append(&mut self, texels: &[f32], file: &mut Vec<u8>) {
+        file.extend(self.y.to_le_bytes());
+        file.extend((4 * texels.len() as i32).to_le_bytes());
+        for &c in &self.order {
+            file.extend(texels.iter().skip(c).step_by(self.order.len()).flat_map(|v| v.to_le_bytes()));
+        }
+        self.y += 1;
     }
 }
 
@@ -102,8 +124,8 @@ fn describe(table: &Table) -> serde_json::Result<BTreeMap<String, String>> {
     }
     let attributes = [
         ("name", table.name.clone()),
-        ("quantity", table.quantity.clone()),
-        ("unit", table.unit.clone()),
+        ("quantity", table.quantity.name.into()),
+        ("unit", table.quantity.unit.into()),
         ("subject", table.subject.clone()),
         ("parameters", json(&table.parameters)?),
         ("axes", json(&entry::axes(table))?),
@@ -126,9 +148,9 @@ fn in_words(table: &Table) -> String {
     format!(
         "{} of {}, unit {}. Axes, slowest first: {}. Width is the last axis, height the product of the \
          others, row-major; row 0 holds the first value. See gonio:axes for the sample positions.",
-        table.quantity,
+        table.quantity.name,
         table.subject,
-        table.unit,
+        table.quantity.unit,
         if axes.is_empty() { "none".into() } else { axes.join(", ") }
     )
 }

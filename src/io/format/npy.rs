@@ -2,23 +2,45 @@
 //! float64, C order.
 
 use crate::base::error::{Error, Result};
+use crate::io::Provenance;
+use crate::io::format::{Format, RowWriter, Streamed};
 use crate::table::storage::{Storage, UNORM};
 use crate::table::{Table, Values};
 use half::f16;
 use npyz::{DType, NpyWriter, Serialize, WriteOptions, WriterBuilder};
 
+/// NumPy: little-endian float32, float64, float16 or uint16 as the table is stored, shape = axes in order, channel last.
+pub static NPY: Format = Format {
+    name: "npy",
+    extension: "npy",
+    summary: "NumPy: an array of the table's axes, its channels last",
+    encode,
+    streamed: Streamed::Rows(begin_rows),
+};
+
 /// The bytes of the file.
-pub(super) fn encode(table: &Table) -> Result<Vec<u8>> {
+fn encode(table: &Table, _: &Provenance) -> Result<Vec<u8>> {
     write(table).map_err(|error| Error::Internal(format!("table {}: NPY: {error}", table.name)))
 }
 
-/// The file up to its first value, for a table in f32 whose values come later.
-pub(super) fn head(table: &Table) -> Result<Vec<u8>> {
-    head_of(&shape(table)).map_err(|error| Error::Internal(format!("table {}: NPY: {error}", table.name)))
+/// The file up to its first value.
+fn begin_rows(table: &Table, _: &Provenance, file: &mut Vec<u8>) -> Result<Box<dyn RowWriter>> {
+    let head = head(&shape(table));
+    file.extend(head.map_err(|error| Error::Internal(format!("table {}: NPY: {error}", table.name)))?);
+    Ok(Box::new(Rows))
 }
 
-/// The file up to its first value, for an array of f32.
-pub(super) fn head_of(shape: &[u64]) -> std::io::Result<Vec<u8>> {
+/// The values of an array in f32, one after the other.
+struct Rows;
+
+impl RowWriter for Rows {
+    fn append(&mut self, texels: &[f32], file: &mut Vec<u8>) {
+        file.extend(texels.iter().flat_map(|value| value.to_le_bytes()));
+    }
+}
+
+/// The file of an array of f32 up to its first value.
+pub(in crate::io) fn head(shape: &[u64]) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     drop(begin::<f32>("<f4", shape, &mut bytes)?);
     Ok(bytes)

@@ -1,6 +1,7 @@
 //! PNG previews, for people: numbers, a line plot, heat maps, or small multiples of slices.
 
 use crate::base::error::Result;
+use crate::io::Provenance;
 use crate::io::draw::canvas::{Align, BLACK, Canvas, Color, Frame, GREY};
 use crate::io::draw::panel::{
     BAR, BELOW, LABEL_SIZE, LEFT, Shown, Slice, TICK_SIZE, axis_labels, color_bar, heat_map, ticks_below,
@@ -8,11 +9,21 @@ use crate::io::draw::panel::{
 };
 use crate::io::draw::scale;
 use crate::io::draw::scale::{Kind, Scale};
+use crate::io::format::{Format, Streamed};
 use crate::table::axis::Axis;
 use crate::table::{ErrorKind, Table};
 
+/// A preview to look at, not to read values from.
+pub static PNG: Format = Format {
+    name: "png",
+    extension: "png",
+    summary: "PNG: a picture to look at, not to read values from",
+    encode,
+    streamed: Streamed::Preview,
+};
+
 /// The bytes of the file. Axes of one sample are no axes here; the subtitle names their values.
-pub(super) fn encode(table: &Table) -> Result<Vec<u8>> {
+fn encode(table: &Table, _: &Provenance) -> Result<Vec<u8>> {
     let axes: Vec<_> = (0..table.axes.len()).filter(|&k| table.axes[k].len() > 1).collect();
     match axes[..] {
         [] => numbers(table),
@@ -194,7 +205,7 @@ fn choose(axis: &Axis, count: usize) -> Vec<usize> {
 /// Title, what holds for the whole picture, and how far to trust it.
 fn header(canvas: &mut Canvas, table: &Table, notes: &[String]) {
     let width = canvas.width() as f32 - 40.0;
-    let title = format!("{}: {} of {} {}", table.name, table.quantity, table.subject, unit(table));
+    let title = format!("{}: {} of {} {}", table.name, table.quantity.name, table.subject, unit(table));
     let title = canvas.fit(&title, 24.0, width);
     canvas.text(&title, (20.0, 24.0), 24.0, Align::Left, BLACK);
 
@@ -228,17 +239,17 @@ fn header(canvas: &mut Canvas, table: &Table, notes: &[String]) {
 const SEPARATOR: &str = "   ·   ";
 
 fn unit(table: &Table) -> String {
-    if table.unit == "1" { String::new() } else { format!("[{}]", table.unit) }
+    if table.quantity.unit == "1" { String::new() } else { format!("[{}]", table.quantity.unit) }
 }
 
 /// The label of the values: "brdf [sr⁻¹]".
 fn quantity(table: &Table) -> String {
-    format!("{} {}", table.quantity, unit(table)).trim_end().to_owned()
+    format!("{} {}", table.quantity.name, unit(table)).trim_end().to_owned()
 }
 
 /// Densities per solid angle span decades; reflectances do not.
 fn is_density(table: &Table) -> bool {
-    table.unit != "1"
+    table.quantity.unit != "1"
 }
 
 /// R, G and B as they are; else colours that also the colour-blind tell apart (Okabe and Ito, 2008).
