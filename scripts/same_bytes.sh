@@ -119,7 +119,7 @@ storages_recipe() {
 # More values than are baked in one piece.
 streamed_recipe() {
     printf '[[tables]]\nmodel = "ggx"\nquantity = "brdf"\nroughness = 0.3\naxes = { %s }\n' \
-        'theta_i = 128, theta_e = 256, delta_phi = 513'
+        'theta_i = 256, theta_e = 256, delta_phi = 513'
 }
 
 # A small map with a bright texel, and pairs of directions, every fourth at the mirror.

@@ -42,6 +42,8 @@ pub(super) struct Pair {
     pub cos_d: f64,
     /// 1 − ωi·ωm.
     pub one_minus_cos_d: f64,
+    /// sin θi sin θe cos δ: the part of ωe·R that lies in the surface, R the mirror direction of ωi.
+    pub tangential_cos: f64,
     /// ωi + ωe
     pub h: DVec3,
     /// ωe − ωi
@@ -88,6 +90,7 @@ impl Pair {
             tan2_m: ht2 / hz2,
             cos_d,
             one_minus_cos_d,
+            tangential_cos: s_i * s_e * delta_phi.cos(),
             h,
             d,
         }

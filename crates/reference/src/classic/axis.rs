@@ -34,6 +34,16 @@ pub(super) fn exponent(alpha: f64) -> f64 {
     2.0 / (alpha * alpha) - 1.0
 }
 
+/// (n + 2)/(2π) cosⁿγ, from 1 − cos γ and from cos γ: each has its digits where it is the smaller. 0 where cos γ ≤ 0.
+pub(super) fn cosine_lobe(n: f64, one_minus_cos: f64, cos: f64) -> f64 {
+    let ln_cos = match one_minus_cos {
+        ..0.5 => (-one_minus_cos).ln_1p(),
+        _ if cos > 0.0 => cos.ln(),
+        _ => return 0.0,
+    };
+    (n + 2.0) / (2.0 * PI) * (n * ln_cos).exp()
+}
+
 impl AboutAxis {
     fn rho(&self, mu: f64, s: &Setting, tolerance: f64, factor: &dyn Fn(f64) -> f64) -> [f64; 2] {
         let mu = mu.clamp(MIN_MU, 1.0);

@@ -1,9 +1,8 @@
 //! Lafortune's generalised cosine lobe, normalised, with Cx = Cy.
 
 use crate::Reference;
-use crate::classic::axis::{AboutAxis, Axis, exponent};
+use crate::classic::axis::{AboutAxis, Axis, cosine_lobe, exponent};
 use crate::setting::{Parameters, Setting};
-use std::f64::consts::PI;
 
 /// Lafortune et al. 1997, eq. 6: (Cx ux vx + Cy uy vy + Cz uz vz)ⁿ, times (n + 2)/(2π); Cx is `cxy` and Cz is `cz`.
 pub static LAFORTUNE: &dyn Reference = &AboutAxis {
@@ -16,7 +15,7 @@ pub static LAFORTUNE: &dyn Reference = &AboutAxis {
         let x = if cx < 0.0 { pair.h.x + (1.0 + cx) * sin } else { pair.d.x - (1.0 - cx) * sin };
         let (y, z) = (pair.h.y, pair.d.z + (1.0 - cz) * mu);
         let rest = 0.5 * (x * x + y * y + z * z + lost(mu, sin, [cx, cz]));
-        if rest >= 1.0 { 0.0 } else { (n + 2.0) / (2.0 * PI) * (n * (-rest).ln_1p()).exp() }
+        cosine_lobe(n, rest, cz * pair.mu_i * pair.mu_e - cx * pair.tangential_cos)
     },
     // |Cu|ⁿ times the lobe about it.
     axis: |mu, sin, s: &Setting| {

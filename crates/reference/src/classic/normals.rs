@@ -42,7 +42,8 @@ pub(super) fn rho_dh(f: impl Fn(&Pair) -> [f64; 2], tolerance: f64, mu: f64, wid
                 tan2_m: tan_m * tan_m,
                 cos_d,
                 one_minus_cos_d: 1.0 - cos_d,
-                // Lobes of the normal do not look at them.
+                tangential_cos: f64::NAN,
+                // Lobes of the normal do not look at these and at the azimuth.
                 h: glam::DVec3::NAN,
                 d: glam::DVec3::NAN,
             };

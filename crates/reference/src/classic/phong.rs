@@ -1,8 +1,7 @@
 //! Phong's lobe, normalised.
 
 use crate::Reference;
-use crate::classic::axis::{AboutAxis, Axis, exponent};
-use std::f64::consts::PI;
+use crate::classic::axis::{AboutAxis, Axis, cosine_lobe, exponent};
 
 /// Lafortune & Willems 1994: ks (n + 2)/(2π) cosⁿγ, γ from the mirror direction, at most π/2.
 pub static PHONG: &dyn Reference = &AboutAxis {
@@ -11,7 +10,7 @@ pub static PHONG: &dyn Reference = &AboutAxis {
     value: |pair, s| {
         let n = exponent(s.alpha);
         let versine = 0.5 * (pair.h.x * pair.h.x + pair.h.y * pair.h.y + pair.d.z * pair.d.z);
-        if versine >= 1.0 { 0.0 } else { (n + 2.0) / (2.0 * PI) * (n * (-versine).ln_1p()).exp() }
+        cosine_lobe(n, versine, pair.mu_i * pair.mu_e + pair.tangential_cos)
     },
     axis: |cos, sin, _| Axis { sin, cos, scale: 1.0 },
 };
