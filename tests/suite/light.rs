@@ -4,7 +4,7 @@
 //! (8) reciprocity, (9) energy, (11) outgoing radiance, (12) radiosity, (13) the ideal mirror. Which number belongs to
 //! which is inferred from their order there.
 
-use crate::common::{device, evaluators, golden, listed, nodes};
+use crate::common::{device, evaluators, golden, listed, nodes, sample_data};
 use gonio::bake::{Evaluator, Unobserved};
 use gonio::base::precision::Precision;
 use gonio::base::quadrature::gauss_legendre;
@@ -186,22 +186,11 @@ fn the_kernel_is_portable() {
     validate(&compose(Kernel::Irradiance, None, 3, Precision::F32), Precision::F32).unwrap();
 }
 
-fn museum() -> Option<PathBuf> {
-    let data = std::env::var_os("GONIO_DATA").map(PathBuf::from);
-    let data = data.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data"));
-    let museum = data.join("env/museum.exr");
-    if !museum.exists() {
-        eprintln!("NOT TESTED: {} is not there; set GONIO_DATA to the folder of env/", museum.display());
-        return None;
-    }
-    Some(museum)
-}
-
 /// A real map: 64 × 32 normals within 1e-4, and its harmonics within their known truncation.
 #[test]
-fn a_museum_lights_as_the_reference_says() {
-    let Some(path) = museum() else { return };
-    let (map, _) = read(&path, false).unwrap();
+#[ignore = "needs the sample data: set GONIO_DATA, see CONTRIBUTING.md"]
+fn sample_data_light_as_the_reference_says() {
+    let (map, _) = read(&sample_data("env/museum.exr"), false).unwrap();
     assert_eq!((map.width(), map.height()), (512, 256));
     let light = Light::Map(map);
     let order = order(device(), &light, Check::Sample(256));

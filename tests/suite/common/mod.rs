@@ -17,6 +17,7 @@ use gonio::table::quantity::{Quantity, RHO_DH, RHO_HH};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::OnceLock;
+use std::path::PathBuf;
 
 /// The device under test. There must be one: a suite that skips proves nothing.
 pub fn device() -> &'static Evaluator {
@@ -113,6 +114,17 @@ impl Tried {
 }
 
 /// A reproducible sequence in [0, 1): the additive recurrence of the golden section.
+/// A file of the sample data, which are too large for the repository: tests of it are ignored unless asked for, and fail
+/// without it.
+pub fn sample_data(file: &str) -> PathBuf {
+    let data = std::env::var_os("GONIO_DATA").map(PathBuf::from);
+    let path = data
+        .expect("set GONIO_DATA to the folder of the sample data: CONTRIBUTING.md says what is in it")
+        .join(file);
+    assert!(path.exists(), "{} is not there; CONTRIBUTING.md says what is in GONIO_DATA", path.display());
+    path
+}
+
 pub fn golden(n: usize, seed: f64) -> Vec<f64> {
     (0..n).map(|k| (seed + k as f64 * 0.618_033_988_749_894_9).fract()).collect()
 }
