@@ -3,11 +3,11 @@
 //! its own.
 
 use crate::common::*;
+use crate::promises::{INTEGRAL_F32, VALUE_F32, value_f32};
 
 use gonio::bake::Unobserved;
 use gonio::bake::points::Points;
 use gonio::base::angles::Angles;
-use gonio::base::precision::{INTEGRAL_F32, VALUE_F32};
 use gonio::check::Check;
 use gonio::model::compensation::{Albedo, Compensation, Factor};
 use gonio::model::lobe::Lobe;
@@ -182,7 +182,7 @@ fn coats_and_sheen_agree_with_the_reference() {
                 let table = bake(device(), &plan, Check::All);
                 let worst = table.error.measured_max.unwrap();
                 println!("{name} {names:?} values: {worst:.1e}");
-                assert!(worst <= model.value_f32 + VALUE_F32, "{name}: {:?}", table.error);
+                assert!(worst <= value_f32(model) + VALUE_F32, "{name}: {:?}", table.error);
             }
         }
     }

@@ -2,8 +2,9 @@
 //! all of η, k and f82, alone under the ideal mirror, whose ρ_dh is F, and under GGX.
 
 use crate::common::*;
+use crate::promises::{INTEGRAL_F32, STORED_F32, VALUE_F32};
 use gonio::bake::Evaluator;
-use gonio::base::precision::{INTEGRAL_F32, Precision, STORED_F32, VALUE_F32};
+use gonio::base::precision::Precision;
 use gonio::check::Check;
 use gonio::model;
 use gonio::model::{METALS, MIRRORS};

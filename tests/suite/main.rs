@@ -32,6 +32,7 @@ mod parts;
 mod plans;
 #[cfg(feature = "cli")]
 mod plot;
+mod promises;
 mod radiometry;
 #[cfg(feature = "scene")]
 mod scenes;
