@@ -41,4 +41,5 @@ mod storage;
 mod stream;
 mod thin_film;
 mod trade;
+mod truth;
 mod values;
