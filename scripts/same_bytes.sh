@@ -116,10 +116,10 @@ storages_recipe() {
     done
 }
 
-# More values than are baked in one piece.
+# More values, of A and B, than the 2²⁵ that are baked in one piece.
 streamed_recipe() {
     printf '[[tables]]\nmodel = "ggx"\nquantity = "brdf"\nroughness = 0.3\naxes = { %s }\n' \
-        'theta_i = 256, theta_e = 256, delta_phi = 513'
+        'theta_i = 128, theta_e = 256, delta_phi = 513'
 }
 
 # A small map with a bright texel, and pairs of directions, every fourth at the mirror.

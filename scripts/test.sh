@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs the tests. Where no Vulkan driver is found on Debian or Ubuntu it installs software Vulkan first.
-# --long runs them on more drivers (scripts/drivers.sh).
+# --long runs them on more drivers (scripts/drivers.sh), and those that need the sample data in GONIO_DATA.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -17,7 +17,13 @@ if ! has_vulkan && command -v apt-get >/dev/null; then
     "${as_root[@]}" apt-get install -q -y --no-install-recommends mesa-vulkan-drivers libvulkan1
 fi
 
-if [ "${1:-}" = --long ]; then exec scripts/drivers.sh "${@:2}"; fi
+if [ "${1:-}" = --long ]; then
+    status=0
+    scripts/drivers.sh "${@:2}" || status=1
+    # Without GONIO_DATA they fail and say so.
+    cargo test --release --test suite sample_data -- --ignored || status=1
+    exit $status
+fi
 
 # The reference integrates adaptively: optimised, or it takes minutes.
 cargo test --release --workspace "$@"

@@ -2,10 +2,10 @@
 //! are exchanged, and the input that is named as the worst gives the error that is named.
 
 use crate::common::*;
+use crate::promises::{RECIPROCITY, VALUE_F32, value_f32};
 use gonio::bake::{Evaluator, Unobserved};
-use gonio::base::precision::VALUE_F32;
 use gonio::lab::atlas;
-use gonio::lab::atlas::{Page, RECIPROCITY};
+use gonio::lab::atlas::Page;
 use gonio::model::MODELS;
 use std::sync::OnceLock;
 
@@ -40,7 +40,7 @@ fn f32_is_as_near_to_f64_as_promised() {
             let promise = match page.subject.as_str() {
                 // An exponential: what rounds its exponent grows with it.
                 "beckmann" => 680.0 / f64::from(1 << 24),
-                name if model(name).value_f32 > VALUE_F32 => model(name).value_f32,
+                name if value_f32(model(name)) > VALUE_F32 => value_f32(model(name)),
                 _ => band.alpha.map_or(2e-6, |[low, _]| if low >= 1e-4 { 2e-6 } else { 1e-5 }),
             };
             assert_eq!(band.promise, Some(promise));

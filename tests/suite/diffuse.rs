@@ -1,10 +1,10 @@
 //! Promises of the diffuse lobes: their limits, their closed forms, and all digits where two directions graze.
 
 use crate::common::*;
+use crate::promises::VALUE_F32;
 use gonio::bake::Evaluator;
 use gonio::bake::points::Points;
 use gonio::base::angles::Angles;
-use gonio::base::precision::VALUE_F32;
 use gonio::check::Check;
 use gonio::model::lobe::Lobe;
 use gonio::plan::TablePlan;

@@ -2,6 +2,7 @@
 //! f64 from unit vectors, with nothing of the crate's.
 
 use crate::common::*;
+use crate::promises::value_f32;
 
 use gonio::bake::Unobserved;
 use gonio::base::angles::Angles;
@@ -147,7 +148,7 @@ fn materials_are_what_the_formula_says() {
         let scene = scene(&disney.recipe()).unwrap();
         let material = &scene.materials[0];
         assert_eq!(lobes(material), models);
-        let budget = models.iter().map(|name| model(name).value_f32).fold(0.0, f64::max) + STORED;
+        let budget = models.iter().map(|name| value_f32(model(name))).fold(0.0, f64::max) + STORED;
         let mut worst = 0.0_f64;
         for evaluator in evaluators() {
             let mut subject = Sum::material(evaluator, material).unwrap();

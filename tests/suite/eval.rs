@@ -3,10 +3,10 @@
 
 use crate::common::readers;
 use crate::common::*;
+use crate::promises::{FLOOR, STORED_F32, VALUE_F32, value_f32};
 use gonio::bake::points::Points;
 use gonio::base::angles::{Angles, PHI_MAX};
-use gonio::base::precision::{STORED_F32, VALUE_F32};
-use gonio::check::{Check, VALUE_FLOOR};
+use gonio::check::Check;
 use gonio::model::MODELS;
 use gonio::model::lobe::Lobe;
 use gonio::plan::TablePlan;
@@ -61,8 +61,7 @@ fn are_those_of_a_table() {
                 angles.extend(plan.axes()[2].values().iter().map(pair));
             }
         }
-        for (evaluator, budget) in evaluators().into_iter().zip([model.value_f32.max(VALUE_F32), STORED_F32])
-        {
+        for (evaluator, budget) in evaluators().into_iter().zip([value_f32(model), STORED_F32]) {
             let table = bake(evaluator, &plan, Check::Sample(0));
             let values = evaluate(&mut Points::new(evaluator, plan.lobes()).unwrap(), &angles);
             assert_eq!(values.len(), table.values.len());
@@ -70,7 +69,7 @@ fn are_those_of_a_table() {
                 let (value, of_table) = (f64::from(value), table.values.get(k));
                 // φe is rounded to 4e-16, of δφ ≥ 0.4 or of 0.
                 let budget = budget + 1e-14;
-                let scale = of_table.max(VALUE_FLOOR);
+                let scale = of_table.max(FLOOR);
                 assert!((value - of_table).abs() <= budget * scale, "{}: {value}, {of_table}", model.name);
             }
         }
@@ -154,7 +153,7 @@ fn a_millionth_of_a_radian_from_the_mirror_is_seen() {
                 let ggx = reference_model("ggx");
                 let truth = ggx.brdf(&at, &with_alpha(ggx, alpha)).unwrap();
                 for (value, truth) in value.iter().zip(truth) {
-                    let error = (f64::from(*value) - truth).abs() / truth.max(1e-30);
+                    let error = (f64::from(*value) - truth).abs() / truth.max(FLOOR);
                     assert!(error <= VALUE_F32, "α = {alpha}, {pair:?}: {value} and {truth}, {error:.2e}");
                 }
             }

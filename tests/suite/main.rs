@@ -34,6 +34,7 @@ mod plans;
 #[cfg(feature = "cli")]
 mod plot;
 mod portable;
+mod promises;
 mod radiometry;
 #[cfg(feature = "scene")]
 mod scenes;
@@ -42,4 +43,5 @@ mod storage;
 mod stream;
 mod thin_film;
 mod trade;
+mod truth;
 mod values;

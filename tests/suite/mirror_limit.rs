@@ -2,9 +2,9 @@
 //! delta is never returned as a number.
 
 use crate::common::*;
+use crate::promises::{STORED_F32, VALUE_F32};
 use gonio::bake::points::Points;
 use gonio::base::angles::Angles;
-use gonio::base::precision::{STORED_F32, VALUE_F32};
 use gonio::check::Check;
 use gonio::model::lobe::Lobe;
 use gonio::plan::TablePlan;
@@ -44,7 +44,7 @@ fn integrals_join_the_mirror_as_alpha_squared() {
 
 /// At θi = θe and δφ = 0, θm = 0 and D = 1/(π α²); 1 + 2Λ = √(1 + α² tan²θ) is the same for both, so that
 /// G2 = 1/√(1 + α² tan²θ): f = (1 − Fc) / (4 π α² μ² √(1 + α² tan²θ)), Fc = x⁵, x = 1 − μ
-/// (and 1 − x⁵ = μ (1 + x + x² + x³ + x⁴)). With μ ≥ 2⁻²⁴ that is the horizon too. A, and A + B, which has no Fresnel, are compared. The budget of a value stands beside `VALUE_F32`; the CPU path rounds to storage alone,
+/// (and 1 − x⁵ = μ (1 + x + x² + x³ + x⁴)). With μ ≥ 2⁻²⁴ that is the horizon too. A, and A + B, which has no Fresnel, are compared. The budget of a value is in `promises.rs`; the CPU path rounds to storage alone,
 /// plus what f64 loses of angles (as in tests/values.rs).
 ///
 /// The f64 nearest to π is 1.2e-16 rad from the mirror direction, and a lobe of α = 1e-6 at the horizon shows

@@ -2,7 +2,8 @@
 //! for each combination; those that tell azimuths from each other are in `anisotropy.rs`.
 
 use crate::common::*;
-use gonio::base::precision::{INTEGRAL_F32, Precision};
+use crate::promises::{INTEGRAL_F32, energy, integral_f32};
+use gonio::base::precision::Precision;
 use gonio::check::Check;
 use gonio::model;
 use gonio::model::compensation::Compensation;
@@ -27,7 +28,7 @@ fn bounded() -> impl Iterator<Item = &'static Model> {
     telling().filter(|model| !matches!(model.integral, Integral::Unbounded(_)))
 }
 
-/// Values at the extremes and between, within the budget that stands beside `VALUE_F32`, which separable
+/// Values at the extremes and between, within the budget of `promises.rs`, which separable
 /// Smith's (four roundings and a product for each direction) and none keep too; and reciprocal, bit by bit but
 /// for what contraction is worth.
 #[test]
@@ -73,7 +74,7 @@ fn integrals_agree_with_the_reference() {
         ];
         for tried in plans.map(Tried::new) {
             for evaluator in evaluators() {
-                tried.assert_meets(evaluator, model.integral_f32(), 0.0);
+                tried.assert_meets(evaluator, integral_f32(model), 0.0);
             }
         }
     }
@@ -107,7 +108,7 @@ fn integrals_conserve_energy_and_meet_closed_forms() {
             bake(device(), &basis(&SPLIT_SUM, model, &roughness, vec![axis(Mu, 32)]), Check::Sample(0));
         for texel in 0..table.texels() {
             let rho: f64 = table.texel(texel).into_iter().sum();
-            assert!((0.0..=model.rho_bound + INTEGRAL_F32).contains(&rho), "{}: {rho}", model.name);
+            assert!((0.0..=energy(model) + INTEGRAL_F32).contains(&rho), "{}: {rho}", model.name);
         }
         // The closed forms are those of F = 1, and of what is a mirror as α → 0.
         let terms = model.microfacet.unwrap();
@@ -240,7 +241,7 @@ fn what_is_unbounded_has_no_integrals_and_says_why() {
     assert!(error.contains("beyond any bound") && error.contains("brdf"), "{error}");
     // It really breaks it.
     let reference = reference_model(model.name);
-    assert!(reference.rho_dh(0.01, &with_alpha(reference, 0.25))[0] > 1.0 && model.rho_bound.is_infinite());
+    assert!(reference.rho_dh(0.01, &with_alpha(reference, 0.25))[0] > 1.0 && energy(model).is_infinite());
 }
 
 /// Names that are none are refused with those that are.

@@ -5,6 +5,7 @@
 #[allow(dead_code, missing_docs)]
 mod make_demo_scene;
 
+use crate::common::sample_data;
 use gonio::model::compensation::Compensation;
 use gonio::scene::{Distribution, Material, Scene, SubjectRequest, Weights, read};
 use gonio::table::rule::Rule;
@@ -624,16 +625,11 @@ fn roughness_and_alpha_say_the_same() {
 
 // ---- Real scenes --------------------------------------------------------------------------------
 
-/// Khronos sample models, where they are at hand: ranges and quartiles as Pillow and NumPy count them.
+/// Khronos sample models: ranges and quartiles as Pillow and NumPy count them.
 #[test]
-fn sample_models_give_the_ranges_of_their_textures() {
-    let data = std::env::var_os("GONIO_DATA").map(PathBuf::from);
-    let data = data.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data"));
-    let helmet = data.join("gltf/FlightHelmet/FlightHelmet.gltf");
-    if !helmet.exists() {
-        eprintln!("NOT TESTED: {} is not there; set GONIO_DATA to the folder of gltf/", helmet.display());
-        return;
-    }
+#[ignore = "needs the sample data: set GONIO_DATA, see CONTRIBUTING.md"]
+fn sample_data_give_the_ranges_of_their_textures() {
+    let helmet = sample_data("gltf/FlightHelmet/FlightHelmet.gltf");
     let expected: [(&str, [u8; 5], [u8; 2]); 6] = [
         ("HoseMat", [58, 88, 124, 158, 216], [0, 178]),
         ("RubberWoodMat", [58, 88, 124, 158, 216], [0, 178]),
@@ -653,7 +649,7 @@ fn sample_models_give_the_ranges_of_their_textures() {
         assert_eq!(material.metallic, Some(metallic.map(|level| f64::from(level) / 255.0)), "{name}");
     }
 
-    let lamp = read(&data.join("gltf/AnisotropyBarnLamp/AnisotropyBarnLamp.gltf")).unwrap();
+    let lamp = read(&sample_data("gltf/AnisotropyBarnLamp/AnisotropyBarnLamp.gltf")).unwrap();
     assert_eq!(names(&lamp), ["Lamp Metal", "Lamp Filament", "Lamp Glass"]);
     let [metal, filament, glass] = &lamp.materials[..] else { unreachable!() };
     assert_eq!(models(metal), ["gltf_diffuse", "ggx-anisotropic", "ggx-smith-correlated-none"]);

@@ -276,7 +276,13 @@ fn what_tolerances_cost_is_measured() {
         assert_eq!(costs.len(), 6);
         for of_quantity in costs.chunks(3) {
             for cost in of_quantity {
-                assert!(cost.is_met() && cost.texels >= 1 && cost.evaluations >= 1, "{cost:?}");
+                assert!(
+                    cost.error <= cost.tolerance
+                        && cost.is_met()
+                        && cost.texels >= 1
+                        && cost.evaluations >= 1,
+                    "{cost:?}"
+                );
             }
             assert!(of_quantity.is_sorted_by_key(|cost| cost.evaluations), "{of_quantity:?}");
         }

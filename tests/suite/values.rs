@@ -30,7 +30,7 @@ fn everywhere() -> impl Iterator<Item = TablePlan> {
     })
 }
 
-/// Every value of every model, within the budget that stands beside `VALUE_F32`. The CPU path adds the
+/// Every value of every model, within the budget of `promises.rs`. The CPU path adds the
 /// rounding to storage alone, and 2e-8 where both directions graze and α = 1e-6, as sin θi − sin θe
 /// comes from angles whose sum rounds near π.
 #[test]

@@ -3,9 +3,10 @@
 #[cfg(feature = "files")]
 pub mod readers;
 
+use crate::promises::{STORED_F32, VALUE_F32, integral_f32, value_f32};
 use gonio::backend::gpu::{DeviceChoice, INSTALL};
 use gonio::bake::{Evaluator, Unobserved};
-use gonio::base::precision::{Precision, STORED_F32, VALUE_F32};
+use gonio::base::precision::Precision;
 use gonio::base::timings::Timings;
 use gonio::check::{Check, reference, reference_of_model};
 use gonio::model;
@@ -17,6 +18,7 @@ use gonio::table::axis::{Axis, Mapping, Positions, Variable};
 use gonio::table::quantity::{Quantity, RHO_DH, RHO_HH};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::path::PathBuf;
 use std::sync::OnceLock;
 
 /// The device under test. There must be one: a suite that skips proves nothing.
@@ -75,7 +77,7 @@ pub fn basis(
     let swept = model.shape.map(|_| listed(Variable::Roughness, roughness));
     let axes = swept.into_iter().chain(axes).collect();
     let plan = TablePlan::basis("test", quantity, model, None, axes).unwrap();
-    let exact = [model.integral_f32(), model.value_f32]
+    let exact = [integral_f32(model), value_f32(model)]
         .into_iter()
         .find(|&t| plan.clone().with_tolerance(t).unwrap().precision() == Precision::F32);
     plan.with_tolerance(exact.unwrap()).unwrap()
@@ -123,6 +125,17 @@ impl Tried {
     }
 }
 
+/// A file of the sample data, which are too large for the repository: tests of it are ignored unless asked for, and fail
+/// without it.
+pub fn sample_data(file: &str) -> PathBuf {
+    let data = std::env::var_os("GONIO_DATA").map(PathBuf::from);
+    let path = data
+        .expect("set GONIO_DATA to the folder of the sample data: CONTRIBUTING.md says what is in it")
+        .join(file);
+    assert!(path.exists(), "{} is not there; CONTRIBUTING.md says what is in GONIO_DATA", path.display());
+    path
+}
+
 /// A reproducible sequence in [0, 1): the additive recurrence of the golden section.
 pub fn golden(n: usize, seed: f64) -> Vec<f64> {
     (0..n).map(|k| (seed + k as f64 * 0.618_033_988_749_894_9).fract()).collect()
@@ -132,7 +145,7 @@ pub fn golden(n: usize, seed: f64) -> Vec<f64> {
 /// CPU path round differently where both directions graze, 1e-8 each, is as much more as a model's values are
 /// more sensitive than most.
 pub fn value_budgets(model: &Model) -> [f64; 2] {
-    [model.value_f32, STORED_F32 + 2e-8 * model.value_f32 / VALUE_F32]
+    [value_f32(model), STORED_F32 + 2e-8 * value_f32(model) / VALUE_F32]
 }
 
 /// What an exchange of ωi and ωe may change of a model's values, relative. It exchanges operands of commutative sums and
@@ -140,7 +153,7 @@ pub fn value_budgets(model: &Model) -> [f64; 2] {
 /// not rounded, and which one changes: then each of both is within its budget of the same f.
 pub fn exchange_budget(evaluator: &Evaluator, model: &Model) -> f64 {
     match evaluator {
-        Evaluator::Device(device) if device.canary().unwrap().contracts => 2.0 * model.value_f32,
+        Evaluator::Device(device) if device.canary().unwrap().contracts => 2.0 * value_f32(model),
         _ => 2.0 * f64::from(f32::EPSILON),
     }
 }
