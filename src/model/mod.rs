@@ -316,6 +316,13 @@ impl Model {
         self.shape.map_or(0.0, |shape| shape.measure(roughness))
     }
 
+    /// Whether node counts of its integrals are known. Without them integrals are found by adaptive quadrature: slow, and as
+    /// right.
+    pub fn has_counts(&self) -> bool {
+        let has_integrals = !matches!(self.integral, Integral::Unbounded(_));
+        self.microfacet.is_none_or(|made| made.is_counted || !has_integrals)
+    }
+
     /// Whether the rules that sample can do its integrals.
     pub fn has_samplers(&self) -> bool {
         matches!(self.integral, Integral::Slopes(slopes) if slopes.sampling.is_some())

@@ -19,7 +19,8 @@ pub(crate) struct Facet {
     pub cos_d: f64,
     /// cos θm
     pub cos_m: f64,
-    pub alpha: f64,
+    /// α that is seen from both.
+    pub alpha: [f64; 2],
 }
 
 /// G2(ωi, ωe): the share of microfacets that are neither masked nor shadowed.
