@@ -6,7 +6,7 @@
 //! bounded factor. Rectangles of (φ, r) are bisected until the sum of their errors is below the tolerance
 //! ([`cubature`](crate::base::cubature)), so that kinks, steep Λ at the horizon and peaks that nobody foretold are found.
 //!
-//! Accuracy: errors are those of the 7-point rules, and half of the tolerance is theirs; what is kept is the 15-point
+//! Accuracy: errors are those of the 7-point rules, and a quarter of the tolerance is theirs; what is kept is the 15-point
 //! rule. A lobe that does not converge within [`most`] evaluations gets NaN, which no table is written with.
 
 use crate::base::cubature::{EVALUATIONS, Measured, Rectangle, kronrod, refine};
@@ -75,7 +75,7 @@ pub(crate) fn samples<N: Ndf>(
     let rectangles = start.iter().enumerate().flat_map(|(k, chart)| chart.rectangles(k)).collect();
     // Factors that the lobe is multiplied with turn where μ ~ α, too.
     let turns_at = s.alpha.max(tolerance);
-    let cells = refine(rectangles, 0.5 * tolerance, most(tolerance), |rectangle| {
+    let cells = refine(rectangles, 0.25 * tolerance, most(tolerance), |rectangle| {
         let chart = &start[rectangle.chart];
         let mut found = Vec::with_capacity(EVALUATIONS);
         // K ⊗ K, G ⊗ K and K ⊗ G of A, B, and of what a factor makes of them.
@@ -101,7 +101,7 @@ pub(crate) fn samples<N: Ndf>(
             }
         }
         let error = |rule: usize| (0..3).map(|k| (sums[0][k] - sums[rule][k]).abs()).fold(0.0, f64::max);
-        Measured { samples: found, errors: [error(1), error(2)] }
+        Measured { samples: found, sums: sums[0], errors: [error(1), error(2)] }
     });
     let Some(cells) = cells else { return vec![not_converged(fixed)] };
     // What adds nothing need not be evaluated again: all of it together is a hundredth of the tolerance.
