@@ -23,6 +23,7 @@ use crate::model::masking::none::Unmasked;
 use crate::model::masking::schlick_ggx::SchlickGgx;
 use crate::model::masking::schlick_ggx_direct::SchlickGgxDirect;
 use crate::model::masking::smith_correlated::SmithCorrelated;
+use crate::model::masking::smith_joint_approx::SmithJointApprox;
 use crate::model::masking::smith_separable::SmithSeparable;
 use crate::model::masking::v_cavity::VCavity;
 use crate::model::masking::{self, Masking, Toward};
@@ -101,7 +102,7 @@ macro_rules! parts {
 parts! {
     ndfs: Ggx, Beckmann, Stretched<Ggx>, Stretched<Beckmann>, Gtr, BlinnPhong, Charlie;
     maskings: SmithCorrelated, SmithSeparable, SchlickGgx, SchlickGgxDirect, VCavity, Kelemen, AshikhminNeubelt, DisneyClearcoat,
-        Unmasked;
+        SmithJointApprox, Unmasked;
     fresnels: Schlick, GeneralizedSchlick, Constant, Dielectric, Conductor, F82, ThinFilm;
 }
 

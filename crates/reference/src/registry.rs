@@ -29,6 +29,7 @@ use crate::masking::kelemen::Kelemen;
 use crate::masking::none::Unmasked;
 use crate::masking::schlick_ggx::{SchlickGgx, SchlickGgxDirect};
 use crate::masking::smith_correlated::SmithCorrelated;
+use crate::masking::smith_joint_approx::SmithJointApprox;
 use crate::masking::smith_separable::SmithSeparable;
 use crate::masking::v_cavity::VCavity;
 use crate::microfacet::Microfacet;
@@ -63,6 +64,7 @@ const MASKINGS: Named<&dyn Masking> = &[
     ("kelemen", &Kelemen),
     ("ashikhmin-neubelt", &AshikhminNeubelt),
     ("disney-clearcoat", &DisneyClearcoat),
+    ("smith-joint-approx", &SmithJointApprox),
     ("none", &Unmasked),
 ];
 

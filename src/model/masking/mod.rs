@@ -10,6 +10,7 @@ mod schlick;
 pub(crate) mod schlick_ggx;
 pub(crate) mod schlick_ggx_direct;
 pub(crate) mod smith_correlated;
+pub(crate) mod smith_joint_approx;
 pub(crate) mod smith_separable;
 pub(crate) mod v_cavity;
 

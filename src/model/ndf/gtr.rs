@@ -76,6 +76,7 @@ impl Ndf for Gtr {
             ("smith-correlated", 144.63),
             ("smith-separable", 144.63),
             ("schlick-ggx", 144.63),
+            ("smith-joint-approx", 144.63),
             ("disney-clearcoat", 3.438),
         ],
         bound_at,

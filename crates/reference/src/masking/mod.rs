@@ -6,6 +6,7 @@ pub(crate) mod kelemen;
 pub(crate) mod none;
 pub(crate) mod schlick_ggx;
 pub(crate) mod smith_correlated;
+pub(crate) mod smith_joint_approx;
 pub(crate) mod smith_separable;
 pub(crate) mod v_cavity;
 
