@@ -33,6 +33,7 @@ use crate::model::ndf::charlie::Charlie;
 use crate::model::ndf::ggx::Ggx;
 use crate::model::ndf::gtr::Gtr;
 use crate::model::ndf::stretched::Stretched;
+use crate::model::ndf::student_t::StudentT;
 use crate::model::ndf::{Directions, Draw, Map, Maps, Ndf, Rule};
 use crate::model::parameters::{Parameters, Setting};
 use crate::model::{
@@ -100,7 +101,7 @@ macro_rules! parts {
 }
 
 parts! {
-    ndfs: Ggx, Beckmann, Stretched<Ggx>, Stretched<Beckmann>, Gtr, BlinnPhong, Charlie;
+    ndfs: Ggx, Beckmann, Stretched<Ggx>, Stretched<Beckmann>, Gtr, StudentT, BlinnPhong, Charlie;
     maskings: SmithCorrelated, SmithSeparable, SchlickGgx, SchlickGgxDirect, VCavity, Kelemen, AshikhminNeubelt, DisneyClearcoat,
         SmithJointApprox, Unmasked;
     fresnels: Schlick, GeneralizedSchlick, Constant, Dielectric, Conductor, F82, ThinFilm;
@@ -125,6 +126,13 @@ pub(super) static GTR: Model = Model {
     summary: "generalised Trowbridge–Reitz microfacets, gamma = 1 Disney's clearcoat: f = F0·A + F90·B",
     parameters: Gtr::PARAMETERS,
     ..Made::<Gtr, SmithCorrelated, Schlick>::MODEL
+};
+
+/// Student's t with the defaults.
+pub(super) static STUDENT_T: Model = Model {
+    summary: "Student's t-distribution of slopes, height-correlated Smith of its own, Schlick: f = F0·A + F90·B",
+    parameters: StudentT::PARAMETERS,
+    ..Made::<StudentT, SmithCorrelated, Schlick>::MODEL
 };
 
 /// Blinn–Phong with the defaults.

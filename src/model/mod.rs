@@ -217,6 +217,7 @@ models! {
     microfacet::GGX,
     microfacet::BECKMANN,
     microfacet::GTR,
+    microfacet::STUDENT_T,
     microfacet::BLINN_PHONG,
     microfacet::CHARLIE,
     classic::ward::MODEL,

@@ -39,6 +39,7 @@ use crate::ndf::blinn_phong::BlinnPhong;
 use crate::ndf::charlie::Charlie;
 use crate::ndf::ggx::Ggx;
 use crate::ndf::gtr::Gtr;
+use crate::ndf::student_t::StudentT;
 use crate::{Fresnel, Masking, Ndf, Reference};
 use std::sync::LazyLock;
 
@@ -49,6 +50,7 @@ const NDFS: Named<Distribution> = &[
     ("ggx", Distribution::Round(&Ggx)),
     ("beckmann", Distribution::Round(&Beckmann)),
     ("gtr", Distribution::Round(&Gtr)),
+    ("student-t", Distribution::Round(&StudentT)),
     ("blinn-phong", Distribution::Round(&BlinnPhong)),
     ("charlie", Distribution::Round(&Charlie)),
     ("ggx-anisotropic", Distribution::Stretched(&Ggx)),

@@ -13,6 +13,7 @@ pub(crate) mod ggx_nodes;
 pub(crate) mod ggx_samples;
 pub(crate) mod gtr;
 pub(crate) mod stretched;
+pub(crate) mod student_t;
 
 use crate::base::half_angle::Half;
 use crate::base::quadrature::Node;
