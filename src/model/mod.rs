@@ -14,7 +14,7 @@ pub mod lobe;
 mod masking;
 mod microfacet;
 mod mirror;
-mod ndf;
+pub(crate) mod ndf;
 pub(crate) mod panels;
 pub mod parameters;
 mod roughness;
