@@ -173,6 +173,11 @@ impl Half {
     }
 }
 
+/// sin θ = √((1 − μ)(1 + μ))
+pub(crate) fn sine(mu: f64) -> f64 {
+    ((1.0 - mu) * (1.0 + mu)).sqrt()
+}
+
 /// θ, or the angle whose cosine is [`MU_MIN`] if it is nearer to the horizon.
 pub(crate) fn off_horizon(theta: f64) -> f64 {
     theta.min(MU_MIN.acos())

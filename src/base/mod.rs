@@ -1,6 +1,7 @@
 //! What everything else stands on: errors, precision, angles, half-angle terms, quadrature.
 
 pub mod angles;
+pub(crate) mod cubature;
 pub mod error;
 pub mod half_angle;
 pub mod precision;

@@ -80,12 +80,20 @@ fn model_or_term(name: &str) -> Result<&'static Model> {
 }
 
 fn list() -> Result<()> {
-    let line = |name: &str, summary: &str| print(&format!("  {name:26}{summary}"));
+    let line = |name: &str, summary: &str, is_counted: bool| {
+        let slow = if is_counted { "" } else { " (integrals are slow)" };
+        print(&format!("  {name:26}{summary}{slow}"))
+    };
     print(&format!("{HEADING}models{HEADING:#}"))?;
-    MODELS.iter().try_for_each(|model| line(model.name, model.summary))?;
+    MODELS.iter().try_for_each(|model| line(model.name, model.summary, model.has_counts()))?;
+    let default = MODELS.into_iter().find(|model| model.terms().len() == 2);
     for (kind, terms) in [("masking", &MASKINGS[..]), ("fresnel", &FRESNELS[..])] {
         print(&format!("{HEADING}{kind}{HEADING:#} of a microfacet model, the default first"))?;
-        terms.iter().try_for_each(|term| line(term.name, term.summary))?;
+        for term in terms {
+            let [masking, fresnel] = ["masking", "fresnel"].map(|this| (this == kind).then_some(term.name));
+            let with_term = default.and_then(|model| model.with_terms(masking, fresnel).ok());
+            line(term.name, term.summary, with_term.is_none_or(Model::has_counts))?;
+        }
     }
     Ok(())
 }
@@ -99,6 +107,7 @@ fn one(model: &Model, as_json: bool) -> Result<()> {
             "name": model.name, "summary": model.summary, "source": model.source,
             "parameters": parameters.iter().map(parameter).collect::<Vec<_>>(),
             "parts": model.parts.iter().map(|part| part.name).collect::<Vec<_>>(),
+            "node_counts": model.has_counts(),
             "metals": model.metals().iter().map(metal).collect::<Vec<_>>(), "promises": promises,
         }));
     }
@@ -113,6 +122,9 @@ fn one(model: &Model, as_json: bool) -> Result<()> {
     print(&format!("{HEADING}parts{HEADING:#}"))?;
     for part in model.parts {
         print(&format!("  shaders/{}.wgsl", part.name))?;
+    }
+    if !model.has_counts() {
+        print(&format!("{HEADING}node counts{HEADING:#}  none; integrals by adaptive quadrature, slow"))?;
     }
     if !model.metals().is_empty() {
         print(&format!("{HEADING}metals{HEADING:#}"))?;

@@ -2,6 +2,7 @@
 //! whatever has no kernel of its own. As `shaders/lobe/slopes.wgsl`: about the fixed direction, in the azimuth φ of ωm
 //! and in r(tan θm), up to the horizon; but f may be anything, and panels end where it has a kink.
 
+pub(crate) mod adaptive;
 pub(crate) mod stretched;
 
 use crate::base::half_angle::{Azimuth, Half, Pair};
@@ -106,21 +107,24 @@ pub(super) fn samples<N: Ndf, M: Masking>(
     counts: [SlopeCounts; 2],
     tolerance: f64,
 ) -> Vec<Sample> {
-    samples_with::<N, M>(fixed, s, counts, tolerance, None)
+    samples_with::<N>(fixed, s, counts, tolerance, M::OF_NORMAL, None)
 }
 
 /// The same where something turns before the horizon.
-pub(super) fn samples_with<N: Ndf, M: Masking>(
+pub(super) fn samples_with<N: Ndf>(
     fixed: &Fixed,
     s: &Setting,
     counts: [SlopeCounts; 2],
     tolerance: f64,
+    of_normal: Option<Kinks>,
     turn: Option<HorizonTurn>,
 ) -> Vec<Sample> {
-    let fine = is_fine(tolerance);
-    let at = |r| normal::<N>(if fine { N::fine_map(r, s) } else { N::coarse_map(r, s) }, s);
-    let end = |t| if fine { N::fine_end(t, s) } else { N::coarse_end(t, s) };
-    directions(fixed, counts, tolerance, &Normals { end: &end, at: &at, kinks: M::KINKS, turn })
+    let Some(maps) = N::MAPS else { return Vec::new() };
+    let coordinate = if is_fine(tolerance) { maps.fine } else { maps.coarse };
+    let at = |r| normal::<N>((coordinate.map)(r, s), s);
+    let end = |t| (coordinate.end)(t, s);
+    let kinks = of_normal.unwrap_or(Kinks::NONE);
+    directions(fixed, counts, tolerance, &Normals { end: &end, at: &at, kinks, turn })
 }
 
 /// D cos θm dωm = m weight dr dφ/2π
@@ -160,8 +164,56 @@ fn along(
     normals: &Normals,
     samples: &mut Vec<Sample>,
 ) {
-    let Turn { sin: sin_turn, cos, c, t_max, weight: azimuth } = *turn;
-    let (mu, sin, kinks) = (fixed.mu, fixed.sin(), &normals.kinks);
+    for strip in strips(turn, fixed, tolerance, normals) {
+        for node in nodes {
+            let (r, dr) = strip.node(node);
+            samples.extend(sample(turn, fixed, &(normals.at)(r), dr));
+        }
+    }
+}
+
+/// An interval of r in which the integrand is smooth, as an analytic map of [0, 1].
+enum Strip {
+    /// r = start + width x
+    Plain { start: f64, width: f64 },
+    /// r = scale sinh(start + width x)
+    Graded { start: f64, width: f64, scale: f64 },
+    /// r = end − turn sinh(reach x)
+    Horizon { end: f64, turn: f64, reach: f64 },
+}
+
+impl Strip {
+    /// r and dr of a node.
+    fn node(&self, node: &Node) -> (f64, f64) {
+        match *self {
+            Self::Plain { start, width } => {
+                let x = start + width * node.x;
+                (x, width * node.weight)
+            }
+            Self::Graded { start, width, scale } => {
+                let x = start + width * node.x;
+                (scale * x.sinh(), scale * x.cosh() * width * node.weight)
+            }
+            Self::Horizon { end, turn, reach } => {
+                let x = reach * node.x;
+                (end - turn * x.sinh(), turn * x.cosh() * reach * node.weight)
+            }
+        }
+    }
+
+    /// Its length in the coordinate in which the integrand varies on the scale 1.
+    fn length(&self) -> f64 {
+        match *self {
+            Self::Plain { width, .. } | Self::Graded { width, .. } => width,
+            Self::Horizon { reach, .. } => reach,
+        }
+    }
+}
+
+/// The strips of an azimuth, from the normal to the horizon.
+fn strips(turn: &Turn, fixed: &Fixed, tolerance: f64, normals: &Normals) -> Vec<Strip> {
+    let Turn { c, t_max, .. } = *turn;
+    let (mu, kinks) = (fixed.mu, &normals.kinks);
     // cos θe = μ (1 + 2ct − t²)/(1 + t²) is k where (μ + k) t² − 2μct + k − μ = 0.
     let roots = |&k: &f64| {
         let root = (mu * mu * c * c - (k - mu) * (k + mu)).max(0.0).sqrt();
@@ -177,44 +229,47 @@ fn along(
     // scale that holds less than the tolerance is not worth nodes.
     let least = 0.1 * tolerance.sqrt();
     let scale = (kinks.turn)(c).map(|t| (normals.end)(t).max(least));
+    let graded = |r: f64| scale.map_or(r, |scale| (r / scale).asinh());
+    let mut strips = Vec::new();
     for (k, panel) in ends.windows(2).enumerate() {
-        let graded = |r: f64| scale.map_or(r, |scale| (r / scale).asinh());
         let is_last = k + 2 == ends.len();
-        // The last of r before the horizon is a panel of its own, r = end − turn sinh x, if something turns there.
+        // The last of r before the horizon is a strip of its own, if something turns there.
         let turn = normals.turn.filter(|turn| is_last && turn.0 < 0.5 && panel[1] - panel[0] > 1.5);
         let end = if turn.is_some() { panel[1] - 1.0 } else { panel[1] };
         let (start, width) = (graded(panel[0]), graded(end) - graded(panel[0]));
-        let inner = nodes.iter().map(|node| {
-            let x = start + width * node.x;
-            let (r, slope) = scale.map_or((x, 1.0), |scale| (scale * x.sinh(), scale * x.cosh()));
-            (r, slope * width * node.weight)
+        strips.push(match scale {
+            None => Strip::Plain { start, width },
+            Some(scale) => Strip::Graded { start, width, scale },
         });
-        let outer = turn.into_iter().flat_map(|HorizonTurn(turn)| {
-            let reach = (1.0 / turn).asinh();
-            nodes.iter().map(move |node| {
-                let x = reach * node.x;
-                (panel[1] - turn * x.sinh(), turn * x.cosh() * reach * node.weight)
-            })
-        });
-        for (r, dr) in inner.chain(outer) {
-            let Normal { p, m, solid_angle } = (normals.at)(r);
-            let solid_angle = solid_angle * dr * azimuth;
-            // ωe = 2 (ωi·ωm) ωm − ωi
-            let y = m * m + p * p;
-            let root = y.sqrt();
-            let projected = (sin * cos * p + mu * m) / root; // ωi·ωm
-            let x_e = 2.0 * projected * (p / root) * cos - sin;
-            let y_e = 2.0 * projected * (p / root) * sin_turn;
-            let t = p / m;
-            let mu_e = m * m / y * mu * (t_max - t) * (t + 1.0 / t_max);
-            if !(mu_e > 0.0 && solid_angle.is_finite()) {
-                continue;
-            }
-            let pair = Pair::of_cosines_and_sines([mu, mu_e], [sin, x_e.hypot(y_e)]);
-            let azimuth = Azimuth::at(fixed.phi, (-y_e).atan2(-x_e));
-            samples.push(Sample { pair, azimuth, weight: 4.0 * projected * mu_e * solid_angle });
-        }
+        strips.extend(turn.map(|HorizonTurn(turn)| Strip::Horizon {
+            end: panel[1],
+            turn,
+            reach: (1.0 / turn).asinh(),
+        }));
     }
+    strips
+}
+
+/// The direction that a normal of an azimuth reflects the fixed one to, and cos θ dω of it; none below the horizon.
+fn sample(turn: &Turn, fixed: &Fixed, normal: &Normal, dr: f64) -> Option<Sample> {
+    let Turn { sin: sin_turn, cos, t_max, weight: azimuth, .. } = *turn;
+    let (mu, sin) = (fixed.mu, fixed.sin());
+    let Normal { p, m, solid_angle } = *normal;
+    let solid_angle = solid_angle * dr * azimuth;
+    // ωe = 2 (ωi·ωm) ωm − ωi
+    let y = m * m + p * p;
+    let root = y.sqrt();
+    let projected = (sin * cos * p + mu * m) / root; // ωi·ωm
+    let x_e = 2.0 * projected * (p / root) * cos - sin;
+    let y_e = 2.0 * projected * (p / root) * sin_turn;
+    let t = p / m;
+    let mu_e = m * m / y * mu * (t_max - t) * (t + 1.0 / t_max);
+    if !(mu_e > 0.0 && solid_angle.is_finite()) {
+        return None;
+    }
+    let pair = Pair::of_cosines_and_sines([mu, mu_e], [sin, x_e.hypot(y_e)]);
+    let azimuth = Azimuth::at(fixed.phi, (-y_e).atan2(-x_e));
+    Some(Sample { pair, azimuth, weight: 4.0 * projected * mu_e * solid_angle })
 }
 
 /// A rule, or one on each side of a break.

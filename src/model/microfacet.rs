@@ -5,9 +5,8 @@
 //! integrand; what is put together at run time is names.
 
 use crate::base::error::{Error, Result};
-use crate::base::half_angle::{Azimuth, Frame, Half, MU_MIN, Pair};
+use crate::base::half_angle::{Azimuth, Frame, Half, MU_MIN, Pair, sine};
 use crate::model::directions;
-use crate::model::fresnel::Fresnel;
 use crate::model::fresnel::conductor::Conductor;
 use crate::model::fresnel::dielectric::Dielectric;
 use crate::model::fresnel::f82::F82;
@@ -15,8 +14,8 @@ use crate::model::fresnel::generalized_schlick::GeneralizedSchlick;
 use crate::model::fresnel::none::Constant;
 use crate::model::fresnel::schlick::Schlick;
 use crate::model::fresnel::thin_film::ThinFilm;
-use crate::model::half_vector;
-use crate::model::half_vector::stretched;
+use crate::model::fresnel::{self, Fresnel, MEAN_NODES_UNKNOWN};
+use crate::model::half_vector::{self, Kinks, adaptive, stretched};
 use crate::model::masking::ashikhmin_neubelt::AshikhminNeubelt;
 use crate::model::masking::disney_clearcoat::DisneyClearcoat;
 use crate::model::masking::kelemen::Kelemen;
@@ -24,19 +23,22 @@ use crate::model::masking::none::Unmasked;
 use crate::model::masking::schlick_ggx::SchlickGgx;
 use crate::model::masking::schlick_ggx_direct::SchlickGgxDirect;
 use crate::model::masking::smith_correlated::SmithCorrelated;
+use crate::model::masking::smith_joint_approx::SmithJointApprox;
 use crate::model::masking::smith_separable::SmithSeparable;
 use crate::model::masking::v_cavity::VCavity;
-use crate::model::masking::{Masking, Toward};
+use crate::model::masking::{self, Masking, Toward};
 use crate::model::ndf::beckmann::Beckmann;
 use crate::model::ndf::blinn_phong::BlinnPhong;
 use crate::model::ndf::charlie::Charlie;
 use crate::model::ndf::ggx::Ggx;
 use crate::model::ndf::gtr::Gtr;
 use crate::model::ndf::stretched::Stretched;
-use crate::model::ndf::{Map, Ndf};
+use crate::model::ndf::student_t::StudentT;
+use crate::model::ndf::{Directions, Draw, Map, Maps, Ndf, Rule};
 use crate::model::parameters::{Parameters, Setting};
 use crate::model::{
-    Integral, Metal, Model, Parameter, Part, Sampling, SlopeCounts, SlopeMap, Slopes, Term, mirror, part,
+    Branches, Integral, Metal, Model, Parameter, Part, Sampling, SlopeCounts, SlopeMap, Slopes, Term, mirror,
+    part,
 };
 use std::marker::PhantomData;
 use std::sync::LazyLock;
@@ -54,6 +56,8 @@ pub struct Microfacet {
     pub(crate) metals: &'static [Metal],
     /// Why its parameters are refused, if they are.
     pub(crate) refused: fn(&Parameters) -> Option<&'static str>,
+    /// Whether node counts of its integrals are known; without them, they are found by adaptive quadrature.
+    pub(crate) is_counted: bool,
     /// The relative error of its values in f32.
     pub(crate) value_f32: fn(&Setting) -> f64,
     /// What ρ_dh reaches at most at a setting, where that is less than with the worst.
@@ -97,9 +101,9 @@ macro_rules! parts {
 }
 
 parts! {
-    ndfs: Ggx, Beckmann, Stretched<Ggx>, Stretched<Beckmann>, Gtr, BlinnPhong, Charlie;
+    ndfs: Ggx, Beckmann, Stretched<Ggx>, Stretched<Beckmann>, Gtr, StudentT, BlinnPhong, Charlie;
     maskings: SmithCorrelated, SmithSeparable, SchlickGgx, SchlickGgxDirect, VCavity, Kelemen, AshikhminNeubelt, DisneyClearcoat,
-        Unmasked;
+        SmithJointApprox, Unmasked;
     fresnels: Schlick, GeneralizedSchlick, Constant, Dielectric, Conductor, F82, ThinFilm;
 }
 
@@ -122,6 +126,13 @@ pub(super) static GTR: Model = Model {
     summary: "generalised Trowbridge–Reitz microfacets, gamma = 1 Disney's clearcoat: f = F0·A + F90·B",
     parameters: Gtr::PARAMETERS,
     ..Made::<Gtr, SmithCorrelated, Schlick>::MODEL
+};
+
+/// Student's t with the defaults.
+pub(super) static STUDENT_T: Model = Model {
+    summary: "Student's t-distribution of slopes, height-correlated Smith of its own, Schlick: f = F0·A + F90·B",
+    parameters: StudentT::PARAMETERS,
+    ..Made::<StudentT, SmithCorrelated, Schlick>::MODEL
 };
 
 /// Blinn–Phong with the defaults.
@@ -237,18 +248,18 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
                 None => Integral::Mapped(Self::MAP),
             },
         },
-        value_f32: N::VALUE_F32 + F::VALUE_F32,
+        value_f32: N::F32.value + F::VALUE_F32,
         lobe: Self::lobe,
     };
 
     const UNBOUNDED: Option<&'static str> = match M::UNBOUNDED {
-        None if !N::IS_MIRROR_AT_0 => M::UNBOUNDED_OFF_PEAK,
+        None if !N::ALBEDO.is_mirror_at_0 => M::UNBOUNDED_OFF_PEAK,
         why => why,
     };
 
     const RHO_BOUND: f64 = match Self::UNBOUNDED {
         Some(_) => f64::INFINITY,
-        None => of_masking(N::RHO_BOUNDS, M::TERM.name) * F::BOUND,
+        None => of_masking(N::ALBEDO.bounds, M::TERM.name) * F::BOUND,
     };
 
     const TERMS: Microfacet = Microfacet {
@@ -257,69 +268,129 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         fresnel: F::TERM,
         metals: F::METALS,
         refused: F::refused,
-        value_f32: |s| N::value_f32(s) + F::VALUE_F32,
-        rho_most: |s| M::rho_most(N::rho_most(s), s.alpha) * F::BOUND,
-        integral_f32: N::INTEGRAL_F32,
-        faint: N::FAINT,
-        seam: N::SEAM,
-        mean_nodes: F::mean_nodes,
+        is_counted: Self::COUNTS.is_some(),
+        value_f32: |s| N::F32.value_at.map_or(N::F32.value, |value_at| value_at(s)) + F::VALUE_F32,
+        rho_most: |s| M::bound((N::ALBEDO.bound_at)(s), s.alpha) * F::BOUND,
+        integral_f32: N::F32.integral,
+        faint: N::F32.faint,
+        seam: N::ALBEDO.seam,
+        mean_nodes: match F::COUNTS {
+            Some(counts) => counts.mean_nodes,
+            None => |_, _| MEAN_NODES_UNKNOWN,
+        },
     };
 
     const PARTS: [Part; 4] = [
         F::TERM.part,
         N::TERM.part,
         M::TERM.part,
-        if N::STRETCHES { part!("lobe/anisotropic") } else { part!("lobe/microfacet") },
+        if N::AXES.is_some() { part!("lobe/anisotropic") } else { part!("lobe/microfacet") },
     ];
 
-    const SLOPES: Option<Slopes> = match N::MAPS {
-        Some([coarse, fine]) if !M::OF_NORMAL => Some(Self::slopes(coarse, fine)),
+    /// The node counts of all three, if all have them.
+    const COUNTS: Option<(Rule, masking::Counts, fresnel::Counts)> = match (N::RULE, M::COUNTS, F::COUNTS) {
+        (Some(ndf), Some(masking), Some(fresnel)) => Some((ndf, masking, fresnel)),
         _ => None,
     };
 
-    const MAP: directions::Map = directions::Map {
-        samples: |fixed, s, tolerance| {
-            let counts = Self::counts(fixed.mu, s, tolerance);
-            match N::STRETCHES {
-                true => stretched::samples::<N, M>(fixed, s, counts, tolerance),
-                false => N::samples::<M>(fixed, s, counts, tolerance),
-            }
-        },
-        most: |s, tolerance| {
-            let panels = if N::STRETCHES { stretched::PANELS } else { 1 };
-            let cost = |mu| panels * N::most::<M>(Self::counts(mu, s, tolerance));
-            [1.0, 0.3, 0.1, 0.03, 1e-2, 1e-3, 1e-4, MU_MIN].map(cost).into_iter().max().unwrap_or(1)
-        },
-        mean: match (N::MEANS, M::KINKS.most > 0) {
-            (Some([smooth, _]), false) => Some(smooth),
-            (Some([_, kinked]), true) => Some(kinked),
-            (None, false) => None,
-            (None, true) => Some(half_vector::mean),
-        },
-        limit: |mu, s| (N::IS_MIRROR_AT_0 && N::axes(s) == [0.0; 2]).then(|| Self::mirror_limit(mu, s)),
+    const SLOPES: Option<Slopes> = match (N::MAPS, Self::COUNTS) {
+        (Some(maps), Some((Rule { kernels: Some(kernels), branches, .. }, ..))) if M::OF_NORMAL.is_none() => {
+            Some(Self::slopes(maps, kernels, branches))
+        }
+        _ => None,
     };
 
-    const fn slopes(coarse: Part, fine: Part) -> Slopes {
+    const MAP: directions::Map = match Self::COUNTS {
+        Some((rule, ..)) => directions::Map {
+            samples: |fixed, s, tolerance| {
+                let counts = Self::counts(fixed.mu, s, tolerance);
+                match Self::DIRECTIONS {
+                    _ if N::AXES.is_some() => stretched::samples::<N, M>(fixed, s, counts, tolerance),
+                    Some(directions) => (directions.samples)(fixed, s, counts, tolerance, M::OF_NORMAL),
+                    None => half_vector::samples::<N, M>(fixed, s, counts, tolerance),
+                }
+            },
+            most: |s, tolerance| {
+                let panels = if N::AXES.is_some() { stretched::PANELS } else { 1 };
+                let cost = |mu| {
+                    let counts = Self::counts(mu, s, tolerance);
+                    panels
+                        * match Self::DIRECTIONS {
+                            Some(directions) => (directions.most)(counts, M::OF_NORMAL),
+                            None => half_vector::most(&kinks::<M>(), counts),
+                        }
+                };
+                [1.0, 0.3, 0.1, 0.03, 1e-2, 1e-3, 1e-4, MU_MIN].map(cost).into_iter().max().unwrap_or(1)
+            },
+            mean: match (rule.means, kinks::<M>().most > 0) {
+                (Some([smooth, _]), false) => Some(smooth),
+                (Some([_, kinked]), true) => Some(kinked),
+                (None, false) => None,
+                (None, true) => Some(half_vector::mean),
+            },
+            limit: Self::limit,
+        },
+        None => directions::Map {
+            samples: |fixed, s, tolerance| {
+                adaptive::samples::<N>(fixed, s, tolerance, &kinks::<M>(), &|p, a| Self::lobe(p, a, s))
+            },
+            most: |_, tolerance| adaptive::most(tolerance),
+            mean: Some(adaptive::mean),
+            limit: Self::limit,
+        },
+    };
+
+    const DIRECTIONS: Option<Directions> = match N::RULE {
+        Some(rule) => rule.directions,
+        None => None,
+    };
+
+    const fn slopes(maps: Maps, [coarse, fine]: [Part; 2], branches: Option<Branches>) -> Slopes {
         Slopes {
             coarse: SlopeMap {
                 part: coarse,
-                end: N::coarse_end,
+                end: maps.coarse.end,
                 integrand: |r, azimuth, mu_e, s| Self::integrand(MapAt::Coarse(r), azimuth, mu_e, s),
             },
             fine: SlopeMap {
                 part: fine,
-                end: N::fine_end,
+                end: maps.fine.end,
                 integrand: |r, azimuth, mu_e, s| Self::integrand(MapAt::Fine(r), azimuth, mu_e, s),
             },
             counts: Self::counts,
-            branches: if F::POLYNOMIAL && M::SPREADS { N::BRANCHES } else { None },
+            branches: if F::POLYNOMIAL && M::SPREADS { branches } else { None },
             mirror_limit: Self::mirror_limit,
             map: Self::MAP,
-            sampling: match N::SAMPLES {
-                Some(part) => Some(Sampling { part, ndf: N::by_ndf::<M, F>, vndf: N::by_vndf::<M, F> }),
+            sampling: match N::DRAWS {
+                Some(draws) => Some(Sampling {
+                    part: draws.part,
+                    ndf: |draw, mu, s| {
+                        Self::estimate(N::DRAWS.map(|draws| (draws.by_ndf)(draw, mu, s)), mu, s)
+                    },
+                    vndf: |draw, mu, s| {
+                        Self::estimate(N::DRAWS.map(|draws| (draws.by_vndf)(draw, mu, s)), mu, s)
+                    },
+                }),
                 None => None,
             },
         }
+    }
+
+    /// f μi / p of a normal that was drawn.
+    fn estimate(draw: Option<Draw>, mu: f64, s: &Setting) -> [f64; 2] {
+        let Some(Draw { x, t2, m, weight: [of_q, rest] }) = draw else { return [f64::NAN; 2] };
+        let q = sine(mu) / mu * x + m;
+        let y = m * m + t2;
+        let z = (2.0 * q * m - y).max(0.0);
+        let all = z * (of_q * q + rest) / M::masking::<N>(z, y, mu, s);
+        let c = (mu * q / y.sqrt()).min(1.0);
+        if z == 0.0 { [0.0; 2] } else { F::fresnel(c, 1.0 - c, s).map(|f| f * all) }
+    }
+
+    /// α → 0, where that is the mirror.
+    fn limit(mu: f64, s: &Setting) -> Option<[f64; 2]> {
+        let axes = N::AXES.map_or([s.alpha; 2], |axes| axes(s));
+        (N::ALBEDO.is_mirror_at_0 && axes == [0.0; 2]).then(|| Self::mirror_limit(mu, s))
     }
 
     fn mirror_limit(mu: f64, s: &Setting) -> [f64; 2] {
@@ -328,8 +399,11 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
 
     /// The NDF's error model is for correlated Smith and Schlick.
     fn counts(mu: f64, s: &Setting, tolerance: f64) -> [SlopeCounts; 2] {
-        let [near, far] = M::counts(N::counts(mu, s, tolerance), tolerance);
-        [F::near(near, s, tolerance), F::far(far, s, tolerance)]
+        let Some((rule, of_masking, of_fresnel)) = Self::COUNTS else {
+            return [SlopeCounts { azimuths: 0, nodes: 0 }; 2];
+        };
+        let [near, far] = of_masking((rule.counts)(mu, s, tolerance), tolerance);
+        [(of_fresnel.near)(near, s, tolerance), (of_fresnel.far)(far, s, tolerance)]
     }
 
     fn lobe(p: &Pair, a: &Azimuth, setting: &Setting) -> [f64; 2] {
@@ -363,16 +437,16 @@ impl<N: Ndf, M: Masking> Facets<N, M> {
     #[inline(never)]
     fn lobe(p: &Pair, a: &Azimuth, h: &Half, setting: &Setting) -> f64 {
         let Frame { cp, cm, sp, sm } = a.frame;
-        let axes = N::axes(setting);
+        let axes = N::AXES.map(|axes| axes(setting));
         let with = |alpha: f64| Setting { alpha, ..*setting };
         let toward = |mu: f64, cos: f64, sin: f64| Toward {
             mu,
-            setting: if N::STRETCHES { with((axes[0] * cos).hypot(axes[1] * sin)) } else { *setting },
+            setting: axes.map_or(*setting, |[x, y]| with((x * cos).hypot(y * sin))),
         };
         let shared = M::visibility::<N>(&toward(p.mu_i, cp + cm, sp + sm), &toward(p.mu_e, cp - cm, sp - sm));
-        let d = match N::STRETCHES {
-            true => N::ndf(&h.stretched(p, a, axes), p.hz2, &with((axes[0] * axes[1]).sqrt())),
-            false => N::ndf(h, p.hz2, setting),
+        let d = match axes {
+            Some(axes) => N::ndf(&h.stretched(p, a, axes), p.hz2, &with((axes[0] * axes[1]).sqrt())),
+            None => N::ndf(h, p.hz2, setting),
         };
         d * M::of_normal(shared, p, h)
     }
@@ -380,15 +454,24 @@ impl<N: Ndf, M: Masking> Facets<N, M> {
     /// ωi·ωm, and the integrand without F.
     #[inline(never)]
     fn integrand(at: MapAt, [mu_c, t_max, t_max_inverse]: [f64; 3], mu_e: f64, s: &Setting) -> [f64; 2] {
+        let Some(maps) = N::MAPS else { return [f64::NAN; 2] };
         let Map { p, m, weight } = match at {
-            MapAt::Coarse(r) => N::coarse_map(r, s),
-            MapAt::Fine(r) => N::fine_map(r, s),
+            MapAt::Coarse(r) => (maps.coarse.map)(r, s),
+            MapAt::Fine(r) => (maps.fine.map)(r, s),
         };
         let projected = mu_e * m + mu_c * p; // ωe·ωm √y
         let y = m * m + p * p;
         let x = (t_max * m - p) * (p + t_max_inverse * m); // cos θi = μe x/y
         let all = 2.0 * x * projected * weight / M::masking::<N>(x, y, mu_e, s);
         [(projected / y.sqrt()).clamp(0.0, 1.0), all]
+    }
+}
+
+/// Where G2 is not smooth in ωm.
+const fn kinks<M: Masking>() -> Kinks {
+    match M::OF_NORMAL {
+        Some(kinks) => kinks,
+        None => Kinks::NONE,
     }
 }
 
@@ -427,15 +510,15 @@ mod tests {
     /// Names are keys of pipelines, words of recipes and parts of file names.
     #[test]
     fn every_combination_has_a_name_of_its_own() {
-        let defaults = [&GGX, &BECKMANN, &GTR, &BLINN_PHONG, &CHARLIE];
+        let defaults = MODELS.iter().filter(|model| model.terms().len() == 2).count();
         // And two that are stretched, which are no defaults.
-        assert_eq!(MICROFACETS.len(), (defaults.len() + 2) * MASKINGS.len() * FRESNELS.len());
+        assert_eq!(MICROFACETS.len(), (defaults + 2) * MASKINGS.len() * FRESNELS.len());
         let names: Vec<_> = model::all().map(|model| model.name).collect();
         for (k, name) in names.iter().enumerate() {
             assert!(!names[..k].contains(name), "{name}");
             assert_eq!(model::find(name).unwrap().name, *name);
         }
-        assert_eq!(names.len(), MODELS.len() + MICROFACETS.len() + MIRRORS.len() - defaults.len() - 1);
+        assert_eq!(names.len(), MODELS.len() + MICROFACETS.len() + MIRRORS.len() - defaults - 1);
         for model in MICROFACETS.iter() {
             let made = model.microfacet.unwrap();
             let masking = made.masking.as_ref().map(|masking| masking.name);

@@ -4,8 +4,8 @@
 //! that it has. It has no values; ρ_dh(μ) = F(μ), and ρ_hh = 2 ∫ F(μ) μ dμ.
 
 use crate::base::precision::VALUE_F32;
-use crate::model::fresnel::Fresnel;
 use crate::model::fresnel::schlick::Schlick;
+use crate::model::fresnel::{Fresnel, MEAN_NODES_UNKNOWN};
 use crate::model::{Component, Integral, Microfacet, Model, Part, Term, part};
 use std::marker::PhantomData;
 
@@ -49,7 +49,11 @@ impl<F: Fresnel> Made<F> {
         fresnel: F::TERM,
         metals: F::METALS,
         refused: F::refused,
-        mean_nodes: F::mean_nodes,
+        is_counted: true,
+        mean_nodes: match F::COUNTS {
+            Some(counts) => counts.mean_nodes,
+            None => |_, _| MEAN_NODES_UNKNOWN,
+        },
         faint: None,
         seam: None,
         value_f32: |_| crate::base::precision::VALUE_F32,

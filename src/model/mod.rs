@@ -14,7 +14,7 @@ pub mod lobe;
 mod masking;
 mod microfacet;
 mod mirror;
-mod ndf;
+pub(crate) mod ndf;
 pub(crate) mod panels;
 pub mod parameters;
 mod roughness;
@@ -217,6 +217,7 @@ models! {
     microfacet::GGX,
     microfacet::BECKMANN,
     microfacet::GTR,
+    microfacet::STUDENT_T,
     microfacet::BLINN_PHONG,
     microfacet::CHARLIE,
     classic::ward::MODEL,
@@ -314,6 +315,13 @@ impl Model {
     /// The model's own measure of a roughness; 0 where it takes none.
     pub fn measure(&self, roughness: f64) -> f64 {
         self.shape.map_or(0.0, |shape| shape.measure(roughness))
+    }
+
+    /// Whether node counts of its integrals are known. Without them integrals are found by adaptive quadrature: slow, and as
+    /// right.
+    pub fn has_counts(&self) -> bool {
+        let has_integrals = !matches!(self.integral, Integral::Unbounded(_));
+        self.microfacet.is_none_or(|made| made.is_counted || !has_integrals)
     }
 
     /// Whether the rules that sample can do its integrals.

@@ -9,8 +9,16 @@ use gonio::table::quantity::{BRDF, RHO_DH, RHO_HH, SPLIT_SUM};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Names and γ.
-const NEW: [(&str, f64); 6] =
-    [("gtr", 1.0), ("gtr", 1.5), ("gtr", 4.0), ("gtr", 10.0), ("blinn-phong", 0.0), ("charlie", 0.0)];
+const NEW: [(&str, f64); 8] = [
+    ("gtr", 1.0),
+    ("gtr", 1.5),
+    ("gtr", 4.0),
+    ("gtr", 10.0),
+    ("student-t", 2.5),
+    ("student-t", 40.0),
+    ("blinn-phong", 0.0),
+    ("charlie", 0.0),
+];
 
 fn with_gamma(model: &dyn Reference, alpha: f64, gamma: f64) -> Setting {
     Setting::measured(model.measure(), alpha, &Parameters::named([("gamma", gamma)]).unwrap()).unwrap()
@@ -47,6 +55,33 @@ fn gtr_has_the_limits_of_its_exponent() {
     }
 }
 
+/// γ = 2 is GGX; γ → ∞ goes over into Beckmann, 1/γ off; α → 0 is the mirror, and energy is conserved at every γ.
+#[test]
+fn student_t_has_the_limits_of_its_exponent() {
+    let [student, ggx, beckmann] = ["student-t", "ggx", "beckmann"].map(reference_model);
+    let with = |alpha: f64, gamma: f64| with_gamma(student, alpha, gamma);
+    for angles in directions() {
+        for alpha in [1e-6, 1e-3, 0.1, 0.7, 1.0] {
+            let [a, b] =
+                [student.brdf(&angles, &with(alpha, 2.0)), ggx.brdf(&angles, &with_alpha(ggx, alpha))];
+            assert_near(a.unwrap()[0], b.unwrap()[0], 1e-12, &(angles, alpha));
+        }
+    }
+    for (mu, alpha) in [(1.0, 0.3), (0.3, 0.3), (0.01, 0.1), (0.5, 1.0)] {
+        let sum = |[a, b]: [f64; 2]| a + b;
+        let exact = sum(beckmann.rho_dh(mu, &with_alpha(beckmann, alpha)));
+        let off = [10.0, 20.0, 40.0].map(|gamma| sum(student.rho_dh(mu, &with(alpha, gamma))) - exact);
+        assert!(off[2].abs() < 0.01 && off[2].abs() < 0.7 * off[1].abs(), "{mu}, {alpha}: {off:?}");
+        for gamma in [1.6, 1.8, 3.0, 40.0] {
+            let rho = |alpha: f64| sum(student.rho_dh(mu, &with(alpha, gamma)));
+            assert!(rho(alpha) <= 1.0 + 1e-9, "{gamma}: {}", rho(alpha));
+            assert_eq!(rho(0.0), 1.0);
+            // 1 − ρ falls as (α/μ)^(2γ − 2), the facets that ωi does not see from above.
+            assert!(1.0 - rho(1e-4 * mu) < 1e-3, "{gamma}: {}", rho(1e-4 * mu));
+        }
+    }
+}
+
 /// Below Disney's least α nothing changes.
 #[test]
 fn gtr_takes_no_less_than_its_least_alpha() {
@@ -67,16 +102,19 @@ fn gtr_takes_no_less_than_its_least_alpha() {
 fn values_agree_with_the_reference_for_every_gamma() {
     let mut thetas = extreme_thetas();
     thetas.extend(golden(6, 0.1).iter().map(|u| u * FRAC_PI_2));
-    let gtr = model("gtr");
-    for gamma in [1.0, 1.0 + 1e-7, 1.3, 2.0, 3.7, 10.0] {
+    let gammas =
+        [("gtr", [1.0, 1.0 + 1e-7, 1.3, 2.0, 3.7, 10.0]), ("student-t", [1.6, 1.9, 2.0, 3.7, 11.0, 40.0])];
+    for (name, gamma) in gammas.into_iter().flat_map(|(name, all)| all.map(|gamma| (name, gamma))) {
+        let model = model(name);
         let axes =
             vec![listed(ThetaI, &thetas), listed(ThetaE, &thetas), listed(DeltaPhi, &[0.0, 1e-3, 1.0, PI])];
-        let plan =
-            basis(&BRDF, gtr, &EXTREME_ROUGHNESS, axes).with_parameters(&[("gamma".into(), gamma)]).unwrap();
-        for (evaluator, budget) in evaluators().into_iter().zip(value_budgets(gtr)) {
+        let plan = basis(&BRDF, model, &EXTREME_ROUGHNESS, axes)
+            .with_parameters(&[("gamma".into(), gamma)])
+            .unwrap();
+        for (evaluator, budget) in evaluators().into_iter().zip(value_budgets(model)) {
             let worst = bake(evaluator, &plan, Check::All).error.measured_max.unwrap();
-            println!("γ = {gamma}: {worst:.1e} of {budget:.1e}");
-            assert!(worst <= budget, "γ = {gamma}: {worst} of {budget}");
+            println!("{name}, γ = {gamma}: {worst:.1e} of {budget:.1e}");
+            assert!(worst <= budget, "{name}, γ = {gamma}: {worst} of {budget}");
         }
     }
 }
@@ -84,22 +122,23 @@ fn values_agree_with_the_reference_for_every_gamma() {
 /// Every tolerance is met at every γ, by the arithmetic that the plan chooses: where ρ is in the hundreds, f32 has no 1e-6.
 #[test]
 fn integrals_meet_every_tolerance_for_every_gamma() {
-    let gtr = model("gtr");
     let roughness = [0.0, 0.1, 0.3, 0.6, 1.0];
     let thetas = [0.0, 0.8, 1.4, FRAC_PI_2 - 0.03, FRAC_PI_2 - 1e-3, FRAC_PI_2];
-    for gamma in [1.0, 1.4, 3.0, 10.0] {
+    let gammas =
+        [("gtr", 1.0), ("gtr", 1.4), ("gtr", 3.0), ("gtr", 10.0), ("student-t", 1.6), ("student-t", 30.0)];
+    for (name, gamma) in gammas {
         for (quantity, axes) in [
             (&RHO_DH, vec![listed(ThetaI, &thetas)]),
             (&RHO_HH, vec![]),
             (&SPLIT_SUM, vec![listed(Mu, &[1e-3, 0.2, 1.0])]),
         ] {
-            let plan = basis(quantity, gtr, &roughness, axes);
+            let plan = basis(quantity, model(name), &roughness, axes);
             let plan = plan.with_parameters(&[("gamma".into(), gamma)]).unwrap();
             let tried = Tried::new(plan);
             for tolerance in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8] {
                 // The reference adds 1e-10.
                 let table = tried.assert_meets(device(), tolerance, 1e-10);
-                println!("{} γ = {gamma} to {tolerance:e}: {}", quantity.name, table.precision);
+                println!("{name} {} γ = {gamma} to {tolerance:e}: {}", quantity.name, table.precision);
             }
         }
     }

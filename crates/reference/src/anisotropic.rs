@@ -73,13 +73,14 @@ impl Reference for Anisotropic {
         let turn = angles.phi_i - PI;
         let phi_m = pair.h.y.atan2(pair.h.x) + turn;
         let phi_e = angles.phi_i + PI + angles.delta_phi;
-        let lambda = |tan2, phi| self.ndf.lambda(tan2, alpha_towards(axes, phi), &setting.parameters);
+        let alpha = [alpha_towards(axes, angles.phi_i), alpha_towards(axes, phi_e)];
+        let lambda = |tan2, alpha| self.ndf.lambda(tan2, alpha, &setting.parameters);
         let facet = Facet {
             mu: [pair.mu_i, pair.mu_e],
-            lambda: [lambda(pair.tan2_i, angles.phi_i), lambda(pair.tan2_e, phi_e)],
+            lambda: [lambda(pair.tan2_i, alpha[0]), lambda(pair.tan2_e, alpha[1])],
             cos_d: pair.cos_d,
             cos_m: pair.cos2_m.sqrt(),
-            alpha: setting.alpha,
+            alpha,
         };
         Some(Factors {
             d: self.d(pair.cos2_m, pair.tan2_m, phi_m, axes, setting),
@@ -143,9 +144,9 @@ impl Anisotropic {
         let (sin_turn, cos_turn) = turn.sin_cos();
         let alpha = alpha_along(axes, phi + turn);
         let wo = DVec3::new(sin_of(mu), 0.0, mu);
-        let lambda =
-            |tan2: f64, phi: f64| self.ndf.lambda(tan2, alpha_towards(axes, phi), &setting.parameters);
-        let lambda_o = lambda((wo.x / wo.z).powi(2), phi);
+        let lambda = |tan2: f64, alpha: f64| self.ndf.lambda(tan2, alpha, &setting.parameters);
+        let alpha_o = alpha_towards(axes, phi);
+        let lambda_o = lambda((wo.x / wo.z).powi(2), alpha_o);
         let integrand = |v: f64| {
             let sinh = v.sinh();
             let tan_m = alpha * sinh;
@@ -155,9 +156,15 @@ impl Anisotropic {
             let cos_d = wo.dot(wm);
             let wi = 2.0 * cos_d * wm - wo;
             let mu_i = f64::clamp(wi.z, 0.0, 1.0);
-            let lambda_i = lambda((sin_of(mu_i) / mu_i).powi(2), phi + wi.y.atan2(wi.x));
-            let facet =
-                Facet { mu: [mu_i, mu], lambda: [lambda_i, lambda_o], cos_d, cos_m, alpha: setting.alpha };
+            let alpha_i = alpha_towards(axes, phi + wi.y.atan2(wi.x));
+            let lambda_i = lambda((sin_of(mu_i) / mu_i).powi(2), alpha_i);
+            let facet = Facet {
+                mu: [mu_i, mu],
+                lambda: [lambda_i, lambda_o],
+                cos_d,
+                cos_m,
+                alpha: [alpha_i, alpha_o],
+            };
             let g2 = self.masking.g2(&facet);
             let d = self.d(cos_m * cos_m, tan_m * tan_m, phi + turn, axes, setting);
             let solid_angle = sin_m * cos_m * cos_m * alpha * (1.0 + sinh * sinh).sqrt();

@@ -92,7 +92,13 @@ impl Microfacet {
 
     /// G2 of the ideal mirror: no microfacet leans, and Λ is 0.
     fn mirror(&self, mu: f64, setting: &Setting) -> f64 {
-        self.masking.g2(&Facet { mu: [mu; 2], lambda: [0.0; 2], cos_d: mu, cos_m: 1.0, alpha: setting.alpha })
+        self.masking.g2(&Facet {
+            mu: [mu; 2],
+            lambda: [0.0; 2],
+            cos_d: mu,
+            cos_m: 1.0,
+            alpha: [setting.alpha; 2],
+        })
     }
 
     fn factors_of(&self, pair: &Pair, setting: &Setting) -> Option<Factors> {
@@ -105,7 +111,7 @@ impl Microfacet {
                 .map(|tan2| self.ndf.lambda(tan2, setting.alpha, &setting.parameters)),
             cos_d: pair.cos_d,
             cos_m: pair.cos2_m.sqrt(),
-            alpha: setting.alpha,
+            alpha: [setting.alpha; 2],
         };
         Some(Factors {
             d: self.ndf.d(pair.cos2_m, pair.tan2_m, setting.alpha, &setting.parameters),
@@ -147,7 +153,8 @@ impl Microfacet {
             let cos_d = wo.dot(wm);
             let mu_i = f64::clamp(2.0 * cos_d * wm.z - wo.z, 0.0, 1.0);
             let lambda_i = self.ndf.lambda((sin_of(mu_i) / mu_i).powi(2), alpha, parameters);
-            let facet = Facet { mu: [mu_i, mu], lambda: [lambda_i, lambda_o], cos_d, cos_m, alpha };
+            let facet =
+                Facet { mu: [mu_i, mu], lambda: [lambda_i, lambda_o], cos_d, cos_m, alpha: [alpha; 2] };
             let g2 = self.masking.g2(&facet);
             let d = self.ndf.d(cos_m * cos_m, tan_m * tan_m, alpha, parameters);
 

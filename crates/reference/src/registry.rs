@@ -29,6 +29,7 @@ use crate::masking::kelemen::Kelemen;
 use crate::masking::none::Unmasked;
 use crate::masking::schlick_ggx::{SchlickGgx, SchlickGgxDirect};
 use crate::masking::smith_correlated::SmithCorrelated;
+use crate::masking::smith_joint_approx::SmithJointApprox;
 use crate::masking::smith_separable::SmithSeparable;
 use crate::masking::v_cavity::VCavity;
 use crate::microfacet::Microfacet;
@@ -38,6 +39,7 @@ use crate::ndf::blinn_phong::BlinnPhong;
 use crate::ndf::charlie::Charlie;
 use crate::ndf::ggx::Ggx;
 use crate::ndf::gtr::Gtr;
+use crate::ndf::student_t::StudentT;
 use crate::{Fresnel, Masking, Ndf, Reference};
 use std::sync::LazyLock;
 
@@ -48,6 +50,7 @@ const NDFS: Named<Distribution> = &[
     ("ggx", Distribution::Round(&Ggx)),
     ("beckmann", Distribution::Round(&Beckmann)),
     ("gtr", Distribution::Round(&Gtr)),
+    ("student-t", Distribution::Round(&StudentT)),
     ("blinn-phong", Distribution::Round(&BlinnPhong)),
     ("charlie", Distribution::Round(&Charlie)),
     ("ggx-anisotropic", Distribution::Stretched(&Ggx)),
@@ -63,6 +66,7 @@ const MASKINGS: Named<&dyn Masking> = &[
     ("kelemen", &Kelemen),
     ("ashikhmin-neubelt", &AshikhminNeubelt),
     ("disney-clearcoat", &DisneyClearcoat),
+    ("smith-joint-approx", &SmithJointApprox),
     ("none", &Unmasked),
 ];
 

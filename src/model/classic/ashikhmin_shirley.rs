@@ -40,7 +40,7 @@ pub(crate) static MODEL: Model = Model {
     value_f32: COSINE_F32,
     integral: Integral::Mapped(Map {
         samples: |fixed, s, tolerance| cosine::samples(fixed, s, tolerance, Kinks::OF_EQUAL_COSINES),
-        most: |s, tolerance| cosine::most(s, tolerance, &Kinks::OF_EQUAL_COSINES),
+        most: |_, tolerance| cosine::most(tolerance, &Kinks::OF_EQUAL_COSINES),
         mean: Some(half_vector::mean),
         limit: |mu, s| (s.alpha == 0.0).then(|| schlick::fresnel(mu, 1.0 - mu)),
     }),

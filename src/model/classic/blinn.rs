@@ -40,7 +40,7 @@ pub(crate) static MODEL: Model = Model {
     value_f32: COSINE_F32,
     integral: Integral::Mapped(Map {
         samples: |fixed, s, tolerance| cosine::samples(fixed, s, tolerance, Kinks::NONE),
-        most: |s, tolerance| cosine::most(s, tolerance, &Kinks::NONE),
+        most: |_, tolerance| cosine::most(tolerance, &Kinks::NONE),
         mean: None,
         limit: |mu, s| (s.alpha == 0.0).then_some([mu * mu, 0.0]),
     }),

@@ -4,8 +4,7 @@ use crate::base::half_angle::Half;
 use crate::model::directions::{Fixed, Sample};
 use crate::model::half_vector;
 use crate::model::half_vector::{Kinks, Normal, Normals, directions};
-use crate::model::ndf::Ndf;
-use crate::model::ndf::beckmann::Beckmann;
+use crate::model::ndf::beckmann;
 use crate::model::parameters::Setting;
 use crate::model::{Part, SlopeCounts, part};
 use std::f64::consts::TAU;
@@ -34,19 +33,14 @@ pub(super) fn samples(fixed: &Fixed, s: &Setting, tolerance: f64, kinks: Kinks) 
         Normal { p: (k * r * r).exp_m1().sqrt(), m: 1.0, solid_angle }
     };
     let end = |t: f64| ((t * t).ln_1p() / k).sqrt().min(5.5);
-    directions(
-        fixed,
-        [counts(s, tolerance); 2],
-        tolerance,
-        &Normals { end: &end, at: &at, kinks, turn: None },
-    )
+    directions(fixed, [counts(tolerance); 2], tolerance, &Normals { end: &end, at: &at, kinks, turn: None })
 }
 
-pub(super) fn most(s: &Setting, tolerance: f64, kinks: &Kinks) -> usize {
-    half_vector::most(kinks, [counts(s, tolerance); 2])
+pub(super) fn most(tolerance: f64, kinks: &Kinks) -> usize {
+    half_vector::most(kinks, [counts(tolerance); 2])
 }
 
 /// What Beckmann takes, to which this tends as n grows, and where its tolerance is coarse some more: measured.
-fn counts(s: &Setting, tolerance: f64) -> SlopeCounts {
-    Beckmann::counts(1.0, s, tolerance)[0].at_least([4, 4], tolerance)
+fn counts(tolerance: f64) -> SlopeCounts {
+    beckmann::counts(tolerance).at_least([4, 4], tolerance)
 }

@@ -21,11 +21,8 @@ use crate::model::classic::gaussian::GAUSSIAN_F32;
 use crate::model::directions::Map;
 use crate::model::half_vector;
 use crate::model::half_vector::Kinks;
-use crate::model::masking::Masking;
-use crate::model::masking::kelemen::Kelemen;
-use crate::model::ndf::Ndf;
-use crate::model::ndf::beckmann::Beckmann;
-use crate::model::parameters::Setting;
+use crate::model::masking::kelemen;
+use crate::model::ndf::beckmann;
 use crate::model::{Component, Integral, Model, Shape, SlopeCounts, part};
 use std::f64::consts::PI;
 
@@ -42,8 +39,8 @@ pub(crate) static MODEL: Model = Model {
     parts: &[part!("classic/ward_dur", "elementary")],
     value_f32: GAUSSIAN_F32,
     integral: Integral::Mapped(Map {
-        samples: |fixed, s, tolerance| gaussian::samples(fixed, s, tolerance, counts(s, tolerance), KINKS),
-        most: |s, tolerance| half_vector::most(&KINKS, [counts(s, tolerance); 2]),
+        samples: |fixed, s, tolerance| gaussian::samples(fixed, s, tolerance, counts(tolerance), KINKS),
+        most: |_, tolerance| half_vector::most(&KINKS, [counts(tolerance); 2]),
         mean: None,
         limit: |_, s| (s.alpha == 0.0).then_some([1.0, 0.0]),
     }),
@@ -55,8 +52,8 @@ pub(crate) static MODEL: Model = Model {
 };
 
 /// 1/(ωi·ωm)² turns as Kelemen's does.
-const KINKS: Kinks = Kelemen::KINKS;
+const KINKS: Kinks = kelemen::KINKS;
 
-fn counts(s: &Setting, tolerance: f64) -> SlopeCounts {
-    Kelemen::counts(Beckmann::counts(1.0, s, tolerance), tolerance)[0]
+fn counts(tolerance: f64) -> SlopeCounts {
+    kelemen::counts(beckmann::counts(tolerance), tolerance)
 }

@@ -23,7 +23,7 @@
 //! Promises: all of a microfacet model's. F ≤ 1, so that it conserves energy.
 
 use crate::model::fresnel::metals::METALS;
-use crate::model::fresnel::{Fresnel, exact};
+use crate::model::fresnel::{Counts, Fresnel, exact};
 use crate::model::parameters::{Parameters, Setting};
 use crate::model::{Component, Metal, Parameter, SlopeCounts, Term, part};
 
@@ -59,6 +59,7 @@ impl Fresnel for Conductor {
         },
     ];
 
+    const COUNTS: Option<Counts> = Some(Counts { near, ..Counts::SCHLICK });
     const METALS: &'static [Metal] = &METALS;
 
     /// (η + ik)² − 1 in place of η and k.
@@ -72,11 +73,6 @@ impl Fresnel for Conductor {
         thinner.then_some(
             "eta² + k² < 1 reflects totally from an angle on, which no tolerance is kept at; give a larger k",
         )
-    }
-
-    fn near(schlick: SlopeCounts, s: &Setting, tolerance: f64) -> SlopeCounts {
-        let [re, im] = e(s.parameters[ETA], s.parameters[K]);
-        exact(schlick, [re.hypot(im), (re + 2.0).hypot(im)], tolerance)
     }
 
     #[inline(never)]
@@ -93,6 +89,11 @@ impl Fresnel for Conductor {
         let q = (even - odd) / (even + odd);
         [0.5 * ((e_re * e_re + e_im * e_im) / (sum * sum)) * (1.0 + q), 0.0]
     }
+}
+
+fn near(schlick: SlopeCounts, s: &Setting, tolerance: f64) -> SlopeCounts {
+    let [re, im] = e(s.parameters[ETA], s.parameters[K]);
+    exact(schlick, [re.hypot(im), (re + 2.0).hypot(im)], tolerance)
 }
 
 /// (η + ik)² − 1

@@ -19,7 +19,7 @@
 //!
 //! Promises: all of a microfacet model's. F ≤ 1, so that it conserves energy.
 
-use crate::model::fresnel::{Fresnel, exact};
+use crate::model::fresnel::{Counts, Fresnel, exact};
 use crate::model::parameters::{Parameters, Setting};
 use crate::model::{Component, Parameter, SlopeCounts, Term, part};
 
@@ -35,6 +35,7 @@ impl Fresnel for Dielectric {
         part: part!("fresnel/dielectric"),
     };
     const COMPONENTS: &'static [Component] = &Component::SPECULAR;
+    const COUNTS: Option<Counts> = Some(Counts { near, ..Counts::SCHLICK });
     const PARAMETERS: &'static [Parameter] = &[Parameter {
         name: "eta",
         summary: "index of refraction, over that of the medium outside",
@@ -49,11 +50,6 @@ impl Fresnel for Dielectric {
         parameters[ETA] = e(parameters[ETA]);
     }
 
-    fn near(schlick: SlopeCounts, s: &Setting, tolerance: f64) -> SlopeCounts {
-        let e = e(s.parameters[ETA]);
-        exact(schlick, [e, e + 2.0], tolerance)
-    }
-
     #[inline(never)]
     fn fresnel(c: f64, x: f64, s: &Setting) -> [f64; 2] {
         let e = e(s.parameters[ETA]);
@@ -65,6 +61,11 @@ impl Fresnel for Dielectric {
         let q = (cg - s2) / (cg + s2);
         [0.5 * (r * r) * (1.0 + q * q), 0.0]
     }
+}
+
+fn near(schlick: SlopeCounts, s: &Setting, tolerance: f64) -> SlopeCounts {
+    let e = e(s.parameters[ETA]);
+    exact(schlick, [e, e + 2.0], tolerance)
 }
 
 /// η² − 1

@@ -19,7 +19,7 @@
 //! Promises: all of a microfacet model's. A + B = 1, so that it conserves energy.
 
 use crate::base::tolerance::is_fine;
-use crate::model::fresnel::Fresnel;
+use crate::model::fresnel::{Counts, Fresnel};
 use crate::model::parameters::Setting;
 use crate::model::{Component, Parameter, SlopeCounts, Term, part};
 
@@ -36,6 +36,7 @@ impl Fresnel for GeneralizedSchlick {
     };
     const COMPONENTS: &'static [Component] = &Component::schlick(0.04);
     const VALUE_F32: f64 = EXPONENT_F32;
+    const COUNTS: Option<Counts> = Some(Counts { near: more, far: more, ..Counts::SCHLICK });
     const PARAMETERS: &'static [Parameter] = &[Parameter {
         name: "exponent",
         summary: "how late F rises: 5 is Schlick's",
@@ -44,14 +45,6 @@ impl Fresnel for GeneralizedSchlick {
         default: Some(5.0),
         place: EXPONENT,
     }];
-
-    fn near(schlick: SlopeCounts, s: &Setting, tolerance: f64) -> SlopeCounts {
-        more(schlick, s, tolerance)
-    }
-
-    fn far(schlick: SlopeCounts, s: &Setting, tolerance: f64) -> SlopeCounts {
-        more(schlick, s, tolerance)
-    }
 
     #[inline(never)]
     fn fresnel(c: f64, x: f64, s: &Setting) -> [f64; 2] {

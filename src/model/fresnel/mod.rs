@@ -1,4 +1,6 @@
 //! Fresnel reflectance.
+//!
+//! What a Fresnel term must say is F and its components: see [`Fresnel`]. The rest makes it faster or its promises sharper.
 
 pub(crate) mod conductor;
 pub(crate) mod dielectric;
@@ -13,13 +15,22 @@ use crate::base::tolerance::{decade, is_fine};
 use crate::model::parameters::{Parameters, Setting};
 use crate::model::{Component, Metal, Parameter, SlopeCounts, Term};
 
-/// F, split by what a material weighs.
+/// F, split by what a material weighs: its name, its components and F. All other items have defaults that are right.
 pub(crate) trait Fresnel {
+    /// The name, the source and the shader.
     const TERM: Term;
+    /// What a material weighs.
     const COMPONENTS: &'static [Component];
+
+    /// The components for c = ωi·ωm and x = 1 − c. Long ones are not inlined: there are hundreds of combinations.
+    fn fresnel(c: f64, x: f64, s: &Setting) -> [f64; 2];
+
+    /// Node counts. Without them integrals are found by adaptive quadrature.
+    const COUNTS: Option<Counts> = None;
     /// Whether it is a polynomial of c with coefficients of no more than some ones: it then leaves ρ as analytic as the
     /// NDF does, and tables may be spread from few integrals.
     const POLYNOMIAL: bool = false;
+    /// Its parameters, in places 4 to 7.
     const PARAMETERS: &'static [Parameter] = &[];
     /// The most that F is.
     const BOUND: f64 = 1.0;
@@ -36,25 +47,26 @@ pub(crate) trait Fresnel {
     fn refused(_parameters: &Parameters) -> Option<&'static str> {
         None
     }
-
-    /// What it takes where cos φ > 0, the side on which ωi·ωm comes near 0, and Schlick takes so much.
-    fn near(schlick: SlopeCounts, _s: &Setting, _tolerance: f64) -> SlopeCounts {
-        schlick
-    }
-
-    /// The same where cos φ < 0.
-    fn far(schlick: SlopeCounts, _s: &Setting, _tolerance: f64) -> SlopeCounts {
-        schlick
-    }
-
-    /// How many more nodes in μ its mean over directions takes than Schlick's.
-    fn mean_nodes(_s: &Setting, _tolerance: f64) -> usize {
-        0
-    }
-
-    /// The components for c = ωi·ωm and x = 1 − c. Long ones are not inlined: there are hundreds of combinations.
-    fn fresnel(c: f64, x: f64, s: &Setting) -> [f64; 2];
 }
+
+/// Node counts, given those that Schlick's term needs.
+pub(crate) struct Counts {
+    /// Where cos φ > 0, the side on which ωi·ωm comes near 0.
+    pub near: fn(schlick: SlopeCounts, &Setting, tolerance: f64) -> SlopeCounts,
+    /// Where cos φ < 0.
+    pub far: fn(schlick: SlopeCounts, &Setting, tolerance: f64) -> SlopeCounts,
+    /// How many more nodes in μ its mean over directions takes than Schlick's.
+    pub mean_nodes: fn(&Setting, tolerance: f64) -> usize,
+}
+
+impl Counts {
+    /// Those of Schlick's term.
+    pub const SCHLICK: Self =
+        Self { near: |schlick, _, _| schlick, far: |schlick, _, _| schlick, mean_nodes: |_, _| 0 };
+}
+
+/// Nodes in μ of the mean over directions that a term without counts takes beside Schlick's.
+pub(crate) const MEAN_NODES_UNKNOWN: usize = 64;
 
 /// What an exact term of index n takes, by |n² − 1| and |n² + 1|.
 ///

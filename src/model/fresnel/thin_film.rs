@@ -41,7 +41,7 @@
 //! where F of the red channel dips through 0, finer ones are not kept. Values: see `FILM_F32`.
 
 use crate::base::tolerance::decade;
-use crate::model::fresnel::Fresnel;
+use crate::model::fresnel::{Counts, Fresnel};
 use crate::model::parameters::{Parameters, Setting};
 use crate::model::{Component, Parameter, SlopeCounts, Term, part};
 use std::cell::Cell;
@@ -64,6 +64,13 @@ impl Fresnel for ThinFilm {
     const COMPONENTS: &'static [Component] = &Component::SPECULAR;
     const BOUND: f64 = 1.29;
     const VALUE_F32: f64 = FILM_F32;
+    /// On the far side ωi·ωm keeps away from 0, where F changes the most. In √μ, F has twice its degree, for which so many
+    /// nodes are exact.
+    const COUNTS: Option<Counts> = Some(Counts {
+        near: |schlick, s, tolerance| more(schlick, s, tolerance, SlopeCounts { azimuths: 110, nodes: 150 }),
+        far: |schlick, s, tolerance| more(schlick, s, tolerance, SlopeCounts { azimuths: 30, nodes: 40 }),
+        mean_nodes: degree,
+    });
     const PARAMETERS: &'static [Parameter] = &[
         Parameter {
             name: "thickness",
@@ -110,20 +117,6 @@ impl Fresnel for ThinFilm {
             "a film of film_eta < 1.1 and more than 300 nm swings faster towards grazing than any tolerance is kept \
              at; give a film_eta of 1.1 or more, or a thinner film",
         )
-    }
-
-    fn near(schlick: SlopeCounts, s: &Setting, tolerance: f64) -> SlopeCounts {
-        more(schlick, s, tolerance, SlopeCounts { azimuths: 110, nodes: 150 })
-    }
-
-    /// There ωi·ωm keeps away from 0, where F changes the most.
-    fn far(schlick: SlopeCounts, s: &Setting, tolerance: f64) -> SlopeCounts {
-        more(schlick, s, tolerance, SlopeCounts { azimuths: 30, nodes: 40 })
-    }
-
-    /// F has twice its degree in √μ, for which so many nodes are exact.
-    fn mean_nodes(s: &Setting, tolerance: f64) -> usize {
-        degree(s, tolerance)
     }
 
     #[inline(never)]

@@ -2,12 +2,12 @@
 //! of α(φ), 1/α(φ)² = cos²φ/αx² + sin²φ/αy², and the rays are as dense as a turn dχ of the unstretched plane,
 //! tan φ = (αy/αx) tan χ.
 
-use crate::base::quadrature::gauss_legendre;
+use crate::base::quadrature::{Node, gauss_legendre};
 use crate::model::SlopeCounts;
 use crate::model::directions::{Fixed, Sample};
-use crate::model::half_vector::{Normals, along, normal};
+use crate::model::half_vector::{Kinks, Normals, along, normal};
 use crate::model::masking::Masking;
-use crate::model::ndf::Ndf;
+use crate::model::ndf::{Coordinate, Ndf};
 use crate::model::parameters::Setting;
 use crate::model::slope_azimuths::Turn;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -15,19 +15,44 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// Panels of χ for each side of `SlopeCounts`: eight in all.
 pub(crate) const PANELS: usize = 4;
 
-/// Directions and what they weigh. χ goes around in panels that end where ωi's horizon turns, at φ = φi ± π/2, and at
-/// the axis of the smaller α, where φ(χ) turns; nodes crowd there as a sinh has them.
+/// Directions and what they weigh.
 pub(crate) fn samples<N: Ndf, M: Masking>(
     fixed: &Fixed,
     s: &Setting,
     counts: [SlopeCounts; 2],
     tolerance: f64,
 ) -> Vec<Sample> {
-    let [x, y] = N::axes(s);
-    let mu = fixed.mu;
-    let tan = fixed.sin() / mu;
+    let (Some(maps), Some(axes)) = (N::MAPS, N::AXES) else { return Vec::new() };
+    let Coordinate { end, map } = maps.fine;
+    let axes = axes(s);
     let counts = fixed.counts(counts[0]);
     let (rule, nodes) = (gauss_legendre(counts.azimuths), gauss_legendre(counts.nodes));
+    let mut samples = Vec::new();
+    for panel in panels(fixed, axes) {
+        for node in &rule {
+            let (turn, alpha) = panel.turn(node, fixed, axes);
+            let s = Setting { alpha, ..*s };
+            let (end, at) = (|t| end(t, &s), |r| normal::<N>(map(r, &s), &s));
+            let kinks = M::OF_NORMAL.unwrap_or(Kinks::NONE);
+            let normals = Normals { end: &end, at: &at, kinks, turn: None };
+            along(&turn, fixed, &nodes, tolerance, &normals, &mut samples);
+        }
+    }
+    samples
+}
+
+/// χ = start ± width sinh u, u from 0 to `reach`.
+pub(super) struct Panel {
+    start: f64,
+    sign: f64,
+    width: f64,
+    pub reach: f64,
+}
+
+/// Panels of χ that go around, and end where ωi's horizon turns, at φ = φi ± π/2, and at the axis of the smaller α, where
+/// φ(χ) turns; nodes crowd there as a sinh has them.
+pub(super) fn panels(fixed: &Fixed, [x, y]: [f64; 2]) -> Vec<Panel> {
+    let mu = fixed.mu;
     // χ of φ, in the same quadrant.
     let turned = |phi: f64| {
         let (sin, cos) = phi.sin_cos();
@@ -48,7 +73,7 @@ pub(crate) fn samples<N: Ndf, M: Masking>(
     // What is near is felt.
     let apart = (second - first).min(first + PI - second);
     let [width, other] = [width.min(other + apart), other.min(width + apart)];
-    let mut samples = Vec::new();
+    let mut panels = Vec::new();
     for (start, end, widths) in [
         (first, second, [width, other]),
         (second, first + PI, [other, width]),
@@ -56,27 +81,29 @@ pub(crate) fn samples<N: Ndf, M: Masking>(
         (second + PI, first + 2.0 * PI, [other, width]),
     ] {
         let half = 0.5 * (end - start);
-        for (from, towards, width) in [(start, 1.0, widths[0]), (end, -1.0, widths[1])] {
-            let reach = (half / width).asinh();
-            for node in &rule {
-                let u = reach * node.x;
-                let (sin_chi, cos_chi) = (from + towards * width * u.sinh()).sin_cos();
-                let dchi = node.weight * reach * width * u.cosh();
-                // (αx cos χ, αy sin χ) = α(φ) (cos φ, sin φ)
-                let alpha = (x * cos_chi).hypot(y * sin_chi);
-                let weight = dchi * x * y / (alpha * alpha * 2.0 * PI);
-                let (cos_phi, sin_phi) = (x * cos_chi / alpha, y * sin_chi / alpha);
-                let (sin_i, cos_i) = fixed.phi.sin_cos();
-                let (cos, sin_turn) = (cos_phi * cos_i + sin_phi * sin_i, sin_phi * cos_i - cos_phi * sin_i);
-                let turn = Turn::new(tan, [cos, sin_turn], weight);
-                let s = Setting { alpha, ..*s };
-                let (end, at) = (|t| N::fine_end(t, &s), |r| normal::<N>(N::fine_map(r, &s), &s));
-                let normals = Normals { end: &end, at: &at, kinks: M::KINKS, turn: None };
-                along(&turn, fixed, &nodes, tolerance, &normals, &mut samples);
-            }
+        for (start, sign, width) in [(start, 1.0, widths[0]), (end, -1.0, widths[1])] {
+            panels.push(Panel { start, sign, width, reach: (half / width).asinh() });
         }
     }
-    samples
+    panels
+}
+
+impl Panel {
+    /// The azimuth at a node of u/`reach`, and α along it.
+    pub fn turn(&self, node: &Node, fixed: &Fixed, [x, y]: [f64; 2]) -> (Turn, f64) {
+        let Self { start, sign, width, reach } = *self;
+        let tan = fixed.sin() / fixed.mu;
+        let u = reach * node.x;
+        let (sin_chi, cos_chi) = (start + sign * width * u.sinh()).sin_cos();
+        let dchi = node.weight * reach * width * u.cosh();
+        // (αx cos χ, αy sin χ) = α(φ) (cos φ, sin φ)
+        let alpha = (x * cos_chi).hypot(y * sin_chi);
+        let weight = dchi * x * y / (alpha * alpha * 2.0 * PI);
+        let (cos_phi, sin_phi) = (x * cos_chi / alpha, y * sin_chi / alpha);
+        let (sin_i, cos_i) = fixed.phi.sin_cos();
+        let (cos, sin_turn) = (cos_phi * cos_i + sin_phi * sin_i, sin_phi * cos_i - cos_phi * sin_i);
+        (Turn::new(tan, [cos, sin_turn], weight), alpha)
+    }
 }
 
 /// What turns faster contributes little: measured, as the best of 1e-5 … 0.1 at every count.

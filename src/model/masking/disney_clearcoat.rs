@@ -7,10 +7,10 @@
 //! reflect up to 0.5 to 1.4 where ωi grazes. Broken beyond: ρ_dh of GGX reaches 1.8 at α = 1/2 and 3.4 at 1, of unequal α
 //! up to 10 it reaches 22.6, and of Charlie 4.3 at α = 1 and 19.2 at 1/200.
 
-use crate::model::masking::{Masking, Toward};
+use crate::model::masking::{Counts, Masking, Toward};
 use crate::model::ndf::Ndf;
 use crate::model::parameters::Setting;
-use crate::model::{SlopeCounts, Term, part};
+use crate::model::{Term, part};
 
 pub(crate) struct DisneyClearcoat;
 
@@ -25,9 +25,8 @@ impl Masking for DisneyClearcoat {
     const SPREADS: bool = false;
 
     /// G1 bends at μ ~ 1/4 where the normals' own Λ, of a small α, is nearly constant: measured.
-    fn counts(correlated: [SlopeCounts; 2], tolerance: f64) -> [SlopeCounts; 2] {
-        correlated.map(|counts| counts.more(1.25).at_least([4, 5], tolerance))
-    }
+    const COUNTS: Option<Counts> =
+        Some(|correlated, tolerance| correlated.map(|counts| counts.more(1.25).at_least([4, 5], tolerance)));
 
     fn visibility<N: Ndf>(i: &Toward, e: &Toward) -> f64 {
         1.0 / (below(i.mu) * below(e.mu))
@@ -40,8 +39,8 @@ impl Masking for DisneyClearcoat {
 
     /// ρ_dh is at most G1 times what ωe sees of the normals over μe, which is 1/G1 of Smith's own; and his, of α, is less by
     /// 4α at most, where ωe grazes.
-    fn rho_most(own: f64, alpha: f64) -> f64 {
-        own * (4.0 * alpha).max(1.0)
+    fn bound(smith: f64, alpha: f64) -> f64 {
+        smith * (4.0 * alpha).max(1.0)
     }
 
     fn mirror(mu: f64) -> f64 {

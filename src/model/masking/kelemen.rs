@@ -6,7 +6,7 @@
 
 use crate::base::half_angle::{Half, Pair};
 use crate::model::half_vector::Kinks;
-use crate::model::masking::{Masking, Toward};
+use crate::model::masking::{Counts, Masking, Toward};
 use crate::model::ndf::Ndf;
 use crate::model::{SlopeCounts, Term, part};
 
@@ -19,14 +19,9 @@ impl Masking for Kelemen {
         source: "Kelemen & Szirmay-Kalos 2001",
         part: part!("masking/kelemen"),
     };
-    const OF_NORMAL: bool = true;
-    /// ωi·ωm = cos θm cos θi (1 + c tan θm): its inverse turns at tan θm ~ 1/c, that is μ.
-    const KINKS: Kinks = Kinks { turn: |c| (c > 0.0).then(|| 1.0 / c), is_sharp: true, ..Kinks::NONE };
-
-    /// Nodes have the turn and the lobe to resolve: measured; 8 in place of 9 leave 2.5 times 1e-9.
-    fn counts(correlated: [SlopeCounts; 2], tolerance: f64) -> [SlopeCounts; 2] {
-        correlated.map(|counts| counts.at_least([4, 9], tolerance))
-    }
+    const OF_NORMAL: Option<Kinks> = Some(KINKS);
+    const COUNTS: Option<Counts> =
+        Some(|correlated, tolerance| correlated.map(|side| counts(side, tolerance)));
 
     fn visibility<N: Ndf>(_i: &Toward, _e: &Toward) -> f64 {
         0.25
@@ -35,4 +30,12 @@ impl Masking for Kelemen {
     fn of_normal(shared: f64, _p: &Pair, h: &Half) -> f64 {
         shared / h.h2
     }
+}
+
+/// ωi·ωm = cos θm cos θi (1 + c tan θm): its inverse turns at tan θm ~ 1/c, that is μ.
+pub(crate) const KINKS: Kinks = Kinks { turn: |c| (c > 0.0).then(|| 1.0 / c), is_sharp: true, ..Kinks::NONE };
+
+/// Nodes have the turn and the lobe to resolve: measured; 8 in place of 9 leave 2.5 times 1e-9.
+pub(crate) fn counts(correlated: SlopeCounts, tolerance: f64) -> SlopeCounts {
+    correlated.at_least([4, 9], tolerance)
 }

@@ -1,4 +1,6 @@
 //! Masking and shadowing of microfacets.
+//!
+//! What a masking term must say is `visibility`: see [`Masking`]. The rest makes it faster or its promises sharper.
 
 pub(crate) mod ashikhmin_neubelt;
 pub(crate) mod disney_clearcoat;
@@ -8,6 +10,7 @@ mod schlick;
 pub(crate) mod schlick_ggx;
 pub(crate) mod schlick_ggx_direct;
 pub(crate) mod smith_correlated;
+pub(crate) mod smith_joint_approx;
 pub(crate) mod smith_separable;
 pub(crate) mod v_cavity;
 
@@ -23,45 +26,43 @@ pub(crate) struct Toward {
     pub setting: Setting,
 }
 
-/// G2 of the normals of `N`.
+/// G2 of the normals of `N`: its name and `visibility`. All other items have defaults that are right.
 pub(crate) trait Masking {
+    /// The name, the source and the shader.
     const TERM: Term;
+
+    /// G2 / (4 μi μe), or what of it all azimuths share.
+    fn visibility<N: Ndf>(i: &Toward, e: &Toward) -> f64;
+
     /// Why ρ has no bound, if it has none.
     const UNBOUNDED: Option<&'static str> = None;
 
     /// The same, where it has none with normals that do not gather about n as α → 0.
     const UNBOUNDED_OFF_PEAK: Option<&'static str> = None;
 
-    /// What it takes where cos φ > 0, the side on which the horizon turns, and where cos φ < 0, when correlated
-    /// Smith takes so much.
-    fn counts(correlated: [SlopeCounts; 2], _tolerance: f64) -> [SlopeCounts; 2] {
-        correlated
-    }
+    /// Node counts where cos φ > 0, the side on which the horizon turns, and where cos φ < 0, given those that
+    /// height-correlated Smith needs. Without them integrals are found by adaptive quadrature.
+    const COUNTS: Option<Counts> = None;
 
     /// Whether ρ has the branch points of the NDF alone, so that tables of it may be spread from few integrals.
-    const SPREADS: bool = true;
-    /// Whether G2 depends on ωm, and the kernel that integrates in slopes cannot have it.
-    const OF_NORMAL: bool = false;
+    const SPREADS: bool = false;
+    /// Where G2 is not smooth in ωm, if it depends on ωm: the kernel that integrates in slopes cannot have it then.
+    const OF_NORMAL: Option<Kinks> = None;
 
-    /// Where G2 is not smooth in ωm.
-    const KINKS: Kinks = Kinks::NONE;
-
-    /// G2 / (4 μi μe), or what of it all azimuths share.
-    fn visibility<N: Ndf>(i: &Toward, e: &Toward) -> f64;
-
-    /// G2 / (4 μi μe), of the microfacet and in proportion to that share.
+    /// G2 / (4 μi μe), of the microfacet and in proportion to what all azimuths share.
     fn of_normal(shared: f64, _p: &Pair, _h: &Half) -> f64 {
         shared
     }
 
-    /// G2 = 2 μe x / masking(x, y), for μi = μe x/y, where it does not depend on ωm.
-    fn masking<N: Ndf>(_x: f64, _y: f64, _mu_e: f64, _s: &Setting) -> f64 {
-        f64::NAN
+    /// y / (2 μe visibility) at μi = μe x/y, for the kernel that integrates in slopes: G2 = 2 μe x / masking(x, y).
+    fn masking<N: Ndf>(x: f64, y: f64, mu_e: f64, s: &Setting) -> f64 {
+        let toward = |mu: f64| Toward { mu, setting: *s };
+        y / (2.0 * mu_e * Self::visibility::<N>(&toward(mu_e * x / y), &toward(mu_e)))
     }
 
-    /// What ρ_dh reaches at most, where it is `own` with Smith's Λ of α.
-    fn rho_most(own: f64, _alpha: f64) -> f64 {
-        own
+    /// The bound of ρ_dh, given the one with Smith's Λ of α.
+    fn bound(smith: f64, _alpha: f64) -> f64 {
+        smith
     }
 
     /// G2 of the mirror that α → 0 tends to.
@@ -69,3 +70,6 @@ pub(crate) trait Masking {
         1.0
     }
 }
+
+/// Node counts of both sides for a tolerance, given those that height-correlated Smith needs.
+pub(crate) type Counts = fn(correlated: [SlopeCounts; 2], tolerance: f64) -> [SlopeCounts; 2];

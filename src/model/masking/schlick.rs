@@ -1,9 +1,9 @@
 //! Schlick's masking, whatever its k: G1 = μ / (μ (1 − k) + k). Twin of `shaders/masking/schlick.wgsl`.
 
-use crate::model::masking::{Masking, Toward};
+use crate::model::Term;
+use crate::model::masking::{Counts, Masking, Toward};
 use crate::model::ndf::Ndf;
 use crate::model::parameters::Setting;
-use crate::model::{SlopeCounts, Term};
 
 /// A choice of k.
 pub(crate) trait Schlick {
@@ -19,9 +19,8 @@ impl<S: Schlick> Masking for S {
     const TERM: Term = S::TERM;
     const UNBOUNDED_OFF_PEAK: Option<&'static str> = S::UNBOUNDED_OFF_PEAK;
 
-    fn counts(correlated: [SlopeCounts; 2], _tolerance: f64) -> [SlopeCounts; 2] {
-        correlated.map(|counts| counts.more(1.25))
-    }
+    const COUNTS: Option<Counts> = Some(|correlated, _| correlated.map(|counts| counts.more(1.25)));
+    const SPREADS: bool = true;
 
     fn visibility<N: Ndf>(i: &Toward, e: &Toward) -> f64 {
         let below = |w: &Toward| below(w.mu, S::k(w.setting.alpha));

@@ -2,10 +2,10 @@
 //! `shaders/masking/smith_separable.wgsl`.
 
 use crate::base::tolerance::is_fine;
-use crate::model::masking::{Masking, Toward};
+use crate::model::masking::{Counts, Masking, Toward};
 use crate::model::ndf::Ndf;
 use crate::model::parameters::Setting;
-use crate::model::{SlopeCounts, Term, part};
+use crate::model::{Term, part};
 
 pub(crate) struct SmithSeparable;
 
@@ -19,9 +19,9 @@ impl Masking for SmithSeparable {
 
     /// More on the near side: for μ ≪ α its G2 bends where G1(ωi) does, which correlated heights wash out by
     /// Λ(ωe). Measured: an eighth more leaves 1.1 times 1e-6.
-    fn counts([near, far]: [SlopeCounts; 2], tolerance: f64) -> [SlopeCounts; 2] {
-        [if is_fine(tolerance) { near } else { near.more(1.25) }, far]
-    }
+    const COUNTS: Option<Counts> =
+        Some(|[near, far], tolerance| [if is_fine(tolerance) { near } else { near.more(1.25) }, far]);
+    const SPREADS: bool = true;
 
     fn visibility<N: Ndf>(i: &Toward, e: &Toward) -> f64 {
         1.0 / ((i.mu + N::smith_root(i.mu, &i.setting)) * (e.mu + N::smith_root(e.mu, &e.setting)))

@@ -7,9 +7,9 @@
 
 use crate::base::half_angle::{Half, Pair};
 use crate::model::half_vector::{DirectionKinks, Kinks};
-use crate::model::masking::{Masking, Toward};
+use crate::model::masking::{Counts, Masking, Toward};
 use crate::model::ndf::Ndf;
-use crate::model::{SlopeCounts, Term, part};
+use crate::model::{Term, part};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI};
 
 pub(crate) struct VCavity;
@@ -21,20 +21,18 @@ impl Masking for VCavity {
         source: "Torrance & Sparrow 1967; Cook & Torrance 1982, section 4",
         part: part!("masking/v_cavity"),
     };
-    const OF_NORMAL: bool = true;
-    const KINKS: Kinks = Kinks {
+    const OF_NORMAL: Option<Kinks> = Some(Kinks {
         breaks,
         most: 2,
         meet: Some(1.0),
         is_sharp: true,
         of_directions: Some(DirectionKinks { sin2, elevations }),
         ..Kinks::NONE
-    };
+    });
 
     /// Where correlated Smith is nearly constant, kinks are not: measured.
-    fn counts(correlated: [SlopeCounts; 2], tolerance: f64) -> [SlopeCounts; 2] {
-        correlated.map(|counts| counts.at_least([4, 3], tolerance))
-    }
+    const COUNTS: Option<Counts> =
+        Some(|correlated, tolerance| correlated.map(|counts| counts.at_least([4, 3], tolerance)));
 
     fn visibility<N: Ndf>(i: &Toward, e: &Toward) -> f64 {
         0.25 / (i.mu * e.mu)

@@ -8,9 +8,9 @@
 use crate::base::half_angle::Half;
 use crate::base::tolerance::decade;
 use crate::model::ndf::stretched::Stretch;
-use crate::model::ndf::{Map, Ndf};
+use crate::model::ndf::{Albedo, Coordinate, Map, Maps, Ndf, Rounding, Rule};
 use crate::model::parameters::Setting;
-use crate::model::{Part, SlopeCounts, Term, part};
+use crate::model::{SlopeCounts, Term, part};
 use libm::erf;
 use std::f64::consts::{FRAC_1_PI, PI};
 
@@ -27,10 +27,17 @@ impl Ndf for Beckmann {
         source: "Walter et al. 2007, eq. 20 and 25",
         part: part!("ndf/beckmann", "elementary", "ndf/smith_of_beckmann", "ndf/smith"),
     };
-    const VALUE_F32: f64 = BECKMANN_F32;
-    const MAPS: Option<[Part; 2]> = Some([part!("ndf/beckmann_coarse"), part!("ndf/beckmann_fine")]);
+    const F32: Rounding = Rounding { value: BECKMANN_F32, ..Rounding::USUAL };
     /// Measured, of α = 1 where ωi grazes.
-    const RHO_BOUNDS: &'static [(&'static str, f64)] = &[("disney-clearcoat", 2.181)];
+    const ALBEDO: Albedo = Albedo { bounds: &[("disney-clearcoat", 2.181)], ..Albedo::CONSERVED };
+    const MAPS: Option<Maps> = Some(Maps {
+        coarse: Coordinate { end: |t_max, s| (t_max / s.alpha).min(4.3), map },
+        fine: Coordinate { end: |t_max, s| (t_max / s.alpha).min(5.5), map },
+    });
+    const RULE: Option<Rule> = Some(Rule {
+        kernels: Some([part!("ndf/beckmann_coarse"), part!("ndf/beckmann_fine")]),
+        ..Rule::new(|_, _, tolerance| [counts(tolerance); 2])
+    });
 
     fn ndf(h: &Half, hz2: f64, &Setting { alpha, .. }: &Setting) -> f64 {
         let q = (-0.5 * h.ht2 / (alpha * alpha * hz2)).exp() * (h.h2 / (alpha * hz2));
@@ -43,27 +50,15 @@ impl Ndf for Beckmann {
         let a = mu / scale;
         mu * erf(a) + scale * (-a * a).exp() / PI.sqrt()
     }
+}
 
-    fn coarse_end(t_max: f64, &Setting { alpha, .. }: &Setting) -> f64 {
-        (t_max / alpha).min(4.3)
-    }
-
-    fn fine_end(t_max: f64, &Setting { alpha, .. }: &Setting) -> f64 {
-        (t_max / alpha).min(5.5)
-    }
-
-    fn fine_map(r: f64, s: &Setting) -> Map {
-        map(r, s)
-    }
-
-    /// The same for all texels, worst over α ∈ [1e-12, 1] and μ ∈ [2⁻²⁴, 1]: see the tests of
-    /// [`microfacet`](crate::model::microfacet).
-    fn counts(_mu: f64, _: &Setting, tolerance: f64) -> [SlopeCounts; 2] {
-        const COUNTS: [[usize; 2]; 10] =
-            [[4, 5], [6, 7], [9, 10], [14, 13], [20, 17], [32, 24], [54, 40], [68, 50], [84, 62], [100, 74]];
-        let [azimuths, nodes] = COUNTS[decade(tolerance)];
-        [SlopeCounts { azimuths, nodes }; 2]
-    }
+/// The same for all texels and both sides, worst over α ∈ [1e-12, 1] and μ ∈ [2⁻²⁴, 1]: see the tests of
+/// [`microfacet`](crate::model::microfacet).
+pub(crate) fn counts(tolerance: f64) -> SlopeCounts {
+    const COUNTS: [[usize; 2]; 10] =
+        [[4, 5], [6, 7], [9, 10], [14, 13], [20, 17], [32, 24], [54, 40], [68, 50], [84, 62], [100, 74]];
+    let [azimuths, nodes] = COUNTS[decade(tolerance)];
+    SlopeCounts { azimuths, nodes }
 }
 
 impl Stretch for Beckmann {
@@ -75,7 +70,7 @@ impl Stretch for Beckmann {
     };
     /// The exponent x ≤ 128 has 5.7 r roundings more.
     const ROUNDINGS: [f64; 2] = [700.0, 730.0];
-    const RHO_BOUNDS: &'static [(&'static str, f64)] = &[("disney-clearcoat", 18.3)];
+    const BOUNDS: &'static [(&'static str, f64)] = &[("disney-clearcoat", 18.3)];
     const COUNTS: [[usize; 2]; 10] =
         [[4, 6], [6, 8], [8, 11], [12, 20], [18, 34], [28, 72], [36, 98], [36, 98], [36, 98], [36, 98]];
 }

@@ -16,8 +16,8 @@
 //! α = 1 where ωi grazes, the most there is, 1.25 at α = 0.7, 1.03 at 0.3.
 
 use crate::base::half_angle::Half;
-use crate::model::ndf::beckmann::Beckmann;
-use crate::model::ndf::{Map, Ndf};
+use crate::model::ndf::beckmann::{self, Beckmann};
+use crate::model::ndf::{Albedo, Coordinate, Map, Maps, Ndf, Rounding, Rule};
 use crate::model::parameters::Setting;
 use crate::model::{SlopeCounts, Term, part};
 use std::f64::consts::FRAC_1_PI;
@@ -35,10 +35,22 @@ impl Ndf for BlinnPhong {
         source: "Walter et al. 2007, eq. 20 and 30",
         part: part!("ndf/blinn_phong", "elementary", "ndf/smith_of_beckmann", "ndf/smith"),
     };
-    const VALUE_F32: f64 = BLINN_PHONG_F32;
+    const F32: Rounding = Rounding { value: BLINN_PHONG_F32, ..Rounding::USUAL };
     /// √π, and measured; of α = 1 at grazing.
-    const RHO_BOUNDS: &'static [(&'static str, f64)] =
-        &[("smith-correlated", 1.7725), ("smith-separable", 1.345), ("disney-clearcoat", 3.438)];
+    const ALBEDO: Albedo = Albedo {
+        bounds: &[("smith-correlated", 1.7725), ("smith-separable", 1.345), ("disney-clearcoat", 3.438)],
+        ..Albedo::CONSERVED
+    };
+    const MAPS: Option<Maps> = Some(Maps {
+        coarse: Coordinate { end: |t_max, s| end(t_max, 4.3, s), map },
+        fine: Coordinate { end: |t_max, s| end(t_max, 5.5, s), map },
+    });
+    /// Beckmann's, and two nodes more for the tail of α near 1: measured from α = 1e-6 on, each count alone leaves less than
+    /// a third of the tolerance.
+    const RULE: Option<Rule> = Some(Rule::new(|_, _, tolerance| {
+        let counts = beckmann::counts(tolerance);
+        [SlopeCounts { nodes: counts.nodes + 2, ..counts }; 2]
+    }));
 
     fn ndf(h: &Half, hz2: f64, &Setting { alpha, .. }: &Setting) -> f64 {
         let exponent = (1.0 - alpha) * (1.0 + alpha) / (alpha * alpha);
@@ -48,25 +60,11 @@ impl Ndf for BlinnPhong {
     fn smith_root(mu: f64, s: &Setting) -> f64 {
         Beckmann::smith_root(mu, s)
     }
+}
 
-    fn fine_end(t_max: f64, s: &Setting) -> f64 {
-        end(t_max, 5.5, s)
-    }
-
-    fn coarse_end(t_max: f64, s: &Setting) -> f64 {
-        end(t_max, 4.3, s)
-    }
-
-    /// cos²θm = exp(−α² r²), so that D cos θm dωm = 2r e^(−r²) dr dφ/2π, as Beckmann's.
-    fn fine_map(r: f64, &Setting { alpha, .. }: &Setting) -> Map {
-        Map { p: (alpha * r).powi(2).exp_m1().sqrt(), m: 1.0, weight: 2.0 * r * (-r * r).exp() }
-    }
-
-    /// Beckmann's, and two nodes more for the tail of α near 1: measured from α = 1e-6 on, each count alone leaves less than
-    /// a third of the tolerance.
-    fn counts(mu: f64, s: &Setting, tolerance: f64) -> [SlopeCounts; 2] {
-        Beckmann::counts(mu, s, tolerance).map(|counts| SlopeCounts { nodes: counts.nodes + 2, ..counts })
-    }
+/// cos²θm = exp(−α² r²), so that D cos θm dωm = 2r e^(−r²) dr dφ/2π, as Beckmann's.
+fn map(r: f64, &Setting { alpha, .. }: &Setting) -> Map {
+    Map { p: (alpha * r).powi(2).exp_m1().sqrt(), m: 1.0, weight: 2.0 * r * (-r * r).exp() }
 }
 
 /// r at which tan θm reaches `t_max`, or beyond which e^(−most²) is left of the weight: of e^(−r²), which G2 and

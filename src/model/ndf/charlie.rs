@@ -23,11 +23,9 @@
 //! with none.
 
 use crate::base::half_angle::Half;
-use crate::model::directions::{Fixed, Sample};
-use crate::model::masking::Masking;
-use crate::model::ndf::{Mean, Ndf, charlie_map};
+use crate::model::ndf::{Albedo, Directions, Ndf, Rounding, Rule, charlie_map};
 use crate::model::parameters::Setting;
-use crate::model::{Shape, SlopeCounts, Term, part};
+use crate::model::{Shape, Term, part};
 use std::f64::consts::TAU;
 
 pub(crate) struct Charlie;
@@ -52,19 +50,38 @@ impl Ndf for Charlie {
         part: part!("ndf/charlie", "elementary", "ndf/smith"),
     };
     const SHAPE: Shape = Shape::SHEEN;
-    const IS_MIRROR_AT_0: bool = false;
-    /// Where Λ's branches meet.
-    const SEAM: Option<f64> = Some(0.5);
-    const VALUE_F32: f64 = CHARLIE_F32;
-    const INTEGRAL_F32: f64 = crate::base::precision::INTEGRAL_F32 + FIT_F32;
-    /// Measured, where ωi grazes: at α = 1/200, but of smith-separable, whose is at 1.
-    const RHO_BOUNDS: &'static [(&'static str, f64)] = &[
-        ("smith-correlated", 8.98),
-        ("smith-separable", 2.72),
-        ("schlick-ggx-direct", 16.9),
-        ("ashikhmin-neubelt", 5.67),
-        ("disney-clearcoat", 19.22),
-    ];
+    /// The seam is where Λ's branches meet. Bounds are measured, where ωi grazes: at α = 1/200, but of smith-separable,
+    /// whose is at 1.
+    const ALBEDO: Albedo = Albedo {
+        is_mirror_at_0: false,
+        bounds: &[
+            ("smith-correlated", 8.98),
+            ("smith-separable", 2.72),
+            ("schlick-ggx-direct", 16.9),
+            ("ashikhmin-neubelt", 5.67),
+            ("disney-clearcoat", 19.22),
+        ],
+        seam: Some(0.5),
+        ..Albedo::CONSERVED
+    };
+    /// |h|² sin²θm leaves f32 below 2⁻¹²⁶, sin θm below 1e-19 of |h|: at α = 1, where D is in proportion to it, that is 1e-19
+    /// in f, which is within 1e-6 of values from `faint` on.
+    const F32: Rounding = Rounding {
+        value: CHARLIE_F32,
+        integral: crate::base::precision::INTEGRAL_F32 + FIT_F32,
+        faint: Some(1e-13),
+        ..Rounding::USUAL
+    };
+    const RULE: Option<Rule> = Some(Rule {
+        directions: Some(Directions {
+            samples: |fixed, _, [counts, _], tolerance, of_normal| {
+                charlie_map::samples(fixed.mu, &fixed.kinks, counts, tolerance, of_normal)
+            },
+            most: |[counts, _], of_normal| charlie_map::most(counts, of_normal),
+        }),
+        means: Some([charlie_map::mean, charlie_map::mean_with_kinks]),
+        ..Rule::new(|_, _, tolerance| charlie_map::counts(tolerance))
+    });
 
     fn ndf(h: &Half, hz2: f64, &Setting { alpha, .. }: &Setting) -> f64 {
         let inverse = 1.0 / alpha.max(ALPHA_LEAST);
@@ -75,29 +92,6 @@ impl Ndf for Charlie {
         let t = (1.0 - alpha.max(ALPHA_LEAST)).powi(2);
         let exponent = if mu < 0.5 { fit(mu, t) } else { 2.0 * fit(0.5, t) - fit(1.0 - mu, t) };
         mu + 2.0 * mu * exponent.exp()
-    }
-
-    /// |h|² sin²θm leaves f32 below 2⁻¹²⁶, sin θm below 1e-19 of |h|: at α = 1, where D is in proportion to it, that is 1e-19
-    /// in f, which is within 1e-6 of values from here on.
-    const FAINT: Option<f64> = Some(1e-13);
-
-    fn samples<M: Masking>(
-        fixed: &Fixed,
-        _: &Setting,
-        [counts, _]: [SlopeCounts; 2],
-        tolerance: f64,
-    ) -> Vec<Sample> {
-        charlie_map::samples::<M>(fixed.mu, &fixed.kinks, counts, tolerance)
-    }
-
-    fn most<M: Masking>([counts, _]: [SlopeCounts; 2]) -> usize {
-        charlie_map::most::<M>(counts)
-    }
-
-    const MEANS: Option<[Mean; 2]> = Some([charlie_map::mean, charlie_map::mean_with_kinks]);
-
-    fn counts(_mu: f64, _s: &Setting, tolerance: f64) -> [SlopeCounts; 2] {
-        charlie_map::counts(tolerance)
     }
 }
 

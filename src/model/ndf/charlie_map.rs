@@ -13,25 +13,25 @@ use crate::base::quadrature::{Node, gauss_legendre};
 use crate::base::tolerance::decade;
 use crate::model::SlopeCounts;
 use crate::model::directions::Sample;
-use crate::model::masking::Masking;
+use crate::model::half_vector::Kinks;
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_6, PI};
 
 /// Where Λ's branches meet.
 const SEAM: f64 = FRAC_PI_6;
 
 /// Directions and what they weigh: cos θ dω of them.
-pub(super) fn samples<M: Masking>(
+pub(super) fn samples(
     mu: f64,
     of_factors: &[f64],
     counts: SlopeCounts,
     tolerance: f64,
+    of_normal: Option<Kinks>,
 ) -> Vec<Sample> {
-    // What has kinks says so of directions too.
-    const { assert!(M::KINKS.most == 0 || M::KINKS.of_directions.is_some()) };
-    let kinks = M::KINKS.of_directions;
+    let kinks = of_normal.and_then(|kinks| kinks.of_directions);
     let sin = ((1.0 - mu) * (1.0 + mu)).sqrt();
     let own = mu.atan2(sin);
-    let (rule, turns) = (ends(nodes::<M>(counts), tolerance), gauss_legendre(azimuths::<M>(counts)));
+    let (rule, turns) =
+        (ends(nodes(counts, of_normal), tolerance), gauss_legendre(azimuths(counts, of_normal)));
     let mut breaks = vec![0.0, SEAM, own, FRAC_PI_2];
     let of_masking = kinks.into_iter().flat_map(|kinks| (kinks.elevations)(own));
     let of_factors = of_factors.iter().map(|cosine| cosine.asin());
@@ -89,19 +89,23 @@ pub(super) fn samples<M: Masking>(
 }
 
 /// At most so many.
-pub(super) fn most<M: Masking>(counts: SlopeCounts) -> usize {
-    let panels = if M::KINKS.of_directions.is_some() { (3 + 4) * 2 } else { 3 };
-    panels * nodes::<M>(counts) * azimuths::<M>(counts)
+pub(super) fn most(counts: SlopeCounts, of_normal: Option<Kinks>) -> usize {
+    let panels = if has_kinks(of_normal) { (3 + 4) * 2 } else { 3 };
+    panels * nodes(counts, of_normal) * azimuths(counts, of_normal)
+}
+
+fn has_kinks(of_normal: Option<Kinks>) -> bool {
+    of_normal.is_some_and(|kinks| kinks.of_directions.is_some())
 }
 
 /// Where kinks make more panels, each takes an eighth less: measured as the counts are.
-fn nodes<M: Masking>(counts: SlopeCounts) -> usize {
-    counts.nodes - if M::KINKS.of_directions.is_some() { counts.nodes / 8 } else { 0 }
+fn nodes(counts: SlopeCounts, of_normal: Option<Kinks>) -> usize {
+    counts.nodes - if has_kinks(of_normal) { counts.nodes / 8 } else { 0 }
 }
 
 /// What maskings of the normal divide by, |h|², takes half as many again: measured as the counts are.
-fn azimuths<M: Masking>(counts: SlopeCounts) -> usize {
-    counts.azimuths + if M::OF_NORMAL { counts.azimuths.div_ceil(2) } else { 0 }
+fn azimuths(counts: SlopeCounts, of_normal: Option<Kinks>) -> usize {
+    counts.azimuths + if of_normal.is_some() { counts.azimuths.div_ceil(2) } else { 0 }
 }
 
 /// cos θ of the directions whose ρ make the mean ∫ ρ 2μ dμ, and their weights: ρ has the same seam and ends. The nodes of each
@@ -163,6 +167,7 @@ mod tests {
     use super::*;
     use crate::model;
     use crate::model::directions::Fixed;
+    use crate::model::masking::Masking;
     use crate::model::masking::ashikhmin_neubelt::AshikhminNeubelt;
     use crate::model::masking::disney_clearcoat::DisneyClearcoat;
     use crate::model::masking::kelemen::Kelemen;
@@ -186,18 +191,17 @@ mod tests {
     /// The truth takes more nodes; the reference agrees with it.
     #[test]
     fn the_counts_hold_for_every_masking() {
-        type Samples = fn(f64, &[f64], SlopeCounts, f64) -> Vec<Sample>;
-        let models: [(&str, Samples); 7] = [
-            ("charlie", samples::<SmithCorrelated>),
-            ("charlie-smith-separable-schlick", samples::<SmithSeparable>),
-            ("charlie-schlick-ggx-direct-schlick", samples::<SchlickGgxDirect>),
-            ("charlie-ashikhmin-neubelt-schlick", samples::<AshikhminNeubelt>),
-            ("charlie-disney-clearcoat-schlick", samples::<DisneyClearcoat>),
-            ("charlie-kelemen-schlick", samples::<Kelemen>),
-            ("charlie-v-cavity-schlick", samples::<VCavity>),
+        let models: [(&str, Option<Kinks>); 7] = [
+            ("charlie", SmithCorrelated::OF_NORMAL),
+            ("charlie-smith-separable-schlick", SmithSeparable::OF_NORMAL),
+            ("charlie-schlick-ggx-direct-schlick", SchlickGgxDirect::OF_NORMAL),
+            ("charlie-ashikhmin-neubelt-schlick", AshikhminNeubelt::OF_NORMAL),
+            ("charlie-disney-clearcoat-schlick", DisneyClearcoat::OF_NORMAL),
+            ("charlie-kelemen-schlick", Kelemen::OF_NORMAL),
+            ("charlie-v-cavity-schlick", VCavity::OF_NORMAL),
         ];
         let mut failed = Vec::new();
-        for (name, plenty) in models {
+        for (name, of_normal) in models {
             let model = model::find(name).unwrap();
             let Integral::Mapped(map) = model.integral else { unreachable!() };
             let worst = (0..61).into_par_iter().map(|k| {
@@ -211,7 +215,7 @@ mod tests {
                 };
                 let s = alpha.into();
                 let most = SlopeCounts { azimuths: 70, nodes: 80 };
-                let exact = sum(model, plenty(mu, &[], most, 1e-10), &s);
+                let exact = sum(model, samples(mu, &[], most, 1e-10, of_normal), &s);
                 if k < 6 {
                     let truth = truth::rho_dh(model, mu, &s);
                     let error = (exact[0] - truth[0]).abs().max((exact[1] - truth[1]).abs());
@@ -247,7 +251,7 @@ mod tests {
             let mean = |nodes: Vec<Node>, finer: f64| {
                 let [counts, _] = counts(finer);
                 let at = |n: &Node| {
-                    let rho = sum(model, samples::<VCavity>(n.x, &[], counts, finer), &s);
+                    let rho = sum(model, samples(n.x, &[], counts, finer, VCavity::OF_NORMAL), &s);
                     rho.map(|rho| rho * n.weight)
                 };
                 nodes.par_iter().map(at).reduce(|| [0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]])

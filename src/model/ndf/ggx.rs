@@ -1,12 +1,12 @@
 //! GGX: Trowbridge & Reitz 1975; Walter et al. 2007, eq. 33. Twin of `shaders/ndf/ggx.wgsl`.
 
 use crate::base::half_angle::Half;
-use crate::model::fresnel::Fresnel;
-use crate::model::masking::Masking;
 use crate::model::ndf::stretched::Stretch;
-use crate::model::ndf::{Map, Ndf, ggx_coarse, ggx_fine, ggx_nodes, ggx_samples};
+use crate::model::ndf::{
+    Albedo, Coordinate, Draws, Maps, Ndf, Rule, ggx_coarse, ggx_fine, ggx_nodes, ggx_samples,
+};
 use crate::model::parameters::Setting;
-use crate::model::{Branches, Part, SlopeCounts, Term, part};
+use crate::model::{Branches, Term, part};
 use std::f64::consts::FRAC_1_PI;
 
 pub(crate) struct Ggx;
@@ -18,14 +18,26 @@ impl Ndf for Ggx {
         source: "Walter et al. 2007, eq. 20 and 33",
         part: part!("ndf/ggx", "ndf/smith_of_ggx"),
     };
-    const MAPS: Option<[Part; 2]> = Some([ggx_coarse::PART, ggx_fine::PART]);
-    const SAMPLES: Option<Part> = Some(ggx_samples::PART);
+    /// Measured, of α = 1 where ωi grazes.
+    const ALBEDO: Albedo = Albedo { bounds: &[("disney-clearcoat", 3.438)], ..Albedo::CONSERVED };
+    const MAPS: Option<Maps> = Some(Maps {
+        coarse: Coordinate {
+            end: |t_max, s| ggx_coarse::map_end(t_max, s.alpha),
+            map: |r, s| ggx_coarse::map(r, s.alpha),
+        },
+        fine: Coordinate {
+            end: |t_max, s| ggx_fine::map_end(t_max, s.alpha),
+            map: |r, s| ggx_fine::map(r, s.alpha),
+        },
+    });
     /// Smith's root α² + (1 − α²) μ² vanishes at μ = ±iα/√(1 − α²), and the map ends at its own branch point,
     /// α = ±i t_max, at μ = ±2iα/(1 − α²). Measured by `print_the_error_of_spreading`: 1 is too little by a third.
-    const BRANCHES: Option<Branches> = Some(Branches { strength: 1.5 });
-
-    /// Measured, of α = 1 where ωi grazes.
-    const RHO_BOUNDS: &'static [(&'static str, f64)] = &[("disney-clearcoat", 3.438)];
+    const RULE: Option<Rule> = Some(Rule {
+        kernels: Some([ggx_coarse::PART, ggx_fine::PART]),
+        branches: Some(Branches { strength: 1.5 }),
+        ..Rule::new(|mu, s, tolerance| ggx_nodes::counts(mu, s.alpha, tolerance))
+    });
+    const DRAWS: Option<Draws> = Some(ggx_samples::DRAWS);
 
     fn ndf(h: &Half, hz2: f64, &Setting { alpha, .. }: &Setting) -> f64 {
         let q = alpha * h.h2 / (alpha * alpha * hz2 + h.ht2);
@@ -40,34 +52,6 @@ impl Ndf for Ggx {
         let (a2, b2) = (alpha * alpha, (1.0 - alpha * alpha) * mu_e * mu_e);
         (a2 * y * y + b2 * x * x).sqrt()
     }
-
-    fn coarse_end(t_max: f64, &Setting { alpha, .. }: &Setting) -> f64 {
-        ggx_coarse::map_end(t_max, alpha)
-    }
-
-    fn coarse_map(r: f64, &Setting { alpha, .. }: &Setting) -> Map {
-        ggx_coarse::map(r, alpha)
-    }
-
-    fn fine_end(t_max: f64, &Setting { alpha, .. }: &Setting) -> f64 {
-        ggx_fine::map_end(t_max, alpha)
-    }
-
-    fn fine_map(r: f64, &Setting { alpha, .. }: &Setting) -> Map {
-        ggx_fine::map(r, alpha)
-    }
-
-    fn counts(mu: f64, &Setting { alpha, .. }: &Setting, tolerance: f64) -> [SlopeCounts; 2] {
-        ggx_nodes::counts(mu, alpha, tolerance)
-    }
-
-    fn by_ndf<M: Masking, F: Fresnel>(draw: [f64; 2], mu_e: f64, s: &Setting) -> [f64; 2] {
-        ggx_samples::by_ndf::<M, F>(draw, mu_e, s)
-    }
-
-    fn by_vndf<M: Masking, F: Fresnel>(draw: [f64; 2], mu_e: f64, s: &Setting) -> [f64; 2] {
-        ggx_samples::by_vndf::<M, F>(draw, mu_e, s)
-    }
 }
 
 impl Stretch for Ggx {
@@ -78,7 +62,7 @@ impl Stretch for Ggx {
         part: Self::TERM.part,
     };
     const ROUNDINGS: [f64; 2] = [60.0, 12.0];
-    const RHO_BOUNDS: &'static [(&'static str, f64)] = &[("disney-clearcoat", 22.56)];
+    const BOUNDS: &'static [(&'static str, f64)] = &[("disney-clearcoat", 22.56)];
     const COUNTS: [[usize; 2]; 10] =
         [[4, 6], [5, 8], [8, 11], [12, 14], [20, 20], [38, 30], [54, 48], [58, 60], [58, 60], [58, 60]];
 }

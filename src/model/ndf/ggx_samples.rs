@@ -1,23 +1,21 @@
 //! Importance sampling of GGX. Twin of `shaders/ndf/ggx_samples.wgsl`, which has the derivation.
 
-use crate::model::fresnel::Fresnel;
-use crate::model::masking::Masking;
-use crate::model::ndf::Ndf;
+use crate::base::half_angle::sine;
 use crate::model::ndf::ggx::Ggx;
+use crate::model::ndf::{Draw, Draws, Ndf};
 use crate::model::parameters::Setting;
-use crate::model::{Part, part};
+use crate::model::part;
 
-pub(crate) const PART: Part = part!("ndf/ggx_samples");
+pub(super) const DRAWS: Draws = Draws { part: part!("ndf/ggx_samples"), by_ndf, by_vndf };
 
-/// f μi / p for a draw (t, cos φ) of D cos θm.
-pub(crate) fn by_ndf<M: Masking, F: Fresnel>([t, cos_phi]: [f64; 2], mu: f64, s: &Setting) -> [f64; 2] {
-    let alpha = s.alpha;
-    let tan = alpha * t;
-    estimate::<M, F>([tan * cos_phi, tan * tan, 1.0], mu, s, |q| 2.0 * mu * q)
+/// The normal of a draw (t, cos φ) of D cos θm.
+fn by_ndf([t, cos_phi]: [f64; 2], mu: f64, s: &Setting) -> Draw {
+    let tan = s.alpha * t;
+    Draw { x: tan * cos_phi, t2: tan * tan, m: 1.0, weight: [2.0 * mu, 0.0] }
 }
 
-/// f μi / p for a draw (u, cos φ) of the normals that ωe sees.
-pub(crate) fn by_vndf<M: Masking, F: Fresnel>([u, cos_phi]: [f64; 2], mu: f64, s: &Setting) -> [f64; 2] {
+/// The normal of a draw (u, cos φ) of the normals that ωe sees.
+fn by_vndf([u, cos_phi]: [f64; 2], mu: f64, s: &Setting) -> Draw {
     let alpha = s.alpha;
     let root = Ggx::smith_root(mu, s);
     let w_x = alpha * sine(mu) / root;
@@ -26,23 +24,5 @@ pub(crate) fn by_vndf<M: Masking, F: Fresnel>([u, cos_phi]: [f64; 2], mu: f64, s
     let sin2 = (1.0 - u) * (m * w_z + w_x * w_x);
     let x = sin2.sqrt() * cos_phi + w_x;
     let t2 = x * x + sin2 * (1.0 - cos_phi * cos_phi).max(0.0);
-    estimate::<M, F>([alpha * x, alpha * alpha * t2, m], mu, s, |_| mu + root)
-}
-
-fn estimate<M: Masking, F: Fresnel>(
-    [x, t2, m]: [f64; 3],
-    mu: f64,
-    s: &Setting,
-    weight: impl Fn(f64) -> f64,
-) -> [f64; 2] {
-    let q = sine(mu) / mu * x + m;
-    let y = m * m + t2;
-    let z = (2.0 * q * m - y).max(0.0);
-    let all = z * weight(q) / M::masking::<Ggx>(z, y, mu, s);
-    let c = (mu * q / y.sqrt()).min(1.0);
-    if z == 0.0 { [0.0; 2] } else { F::fresnel(c, 1.0 - c, s).map(|f| f * all) }
-}
-
-fn sine(mu: f64) -> f64 {
-    ((1.0 - mu) * (1.0 + mu)).sqrt()
+    Draw { x: alpha * x, t2: alpha * alpha * t2, m, weight: [0.0, mu + root] }
 }

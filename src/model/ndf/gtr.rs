@@ -25,9 +25,8 @@ use crate::base::quadrature::{Node, gauss_legendre};
 use crate::base::tolerance::{decade, is_fine};
 use crate::model::directions::{Fixed, Sample};
 use crate::model::half_vector;
-use crate::model::half_vector::HorizonTurn;
-use crate::model::masking::Masking;
-use crate::model::ndf::{Map, Mean, Ndf};
+use crate::model::half_vector::{HorizonTurn, Kinks};
+use crate::model::ndf::{Albedo, Coordinate, Directions, Map, Maps, Ndf, Rounding, Rule};
 use crate::model::parameters::Setting;
 use crate::model::{Parameter, Shape, SlopeCounts, Term, part};
 use std::f64::consts::{FRAC_1_PI, TAU};
@@ -62,24 +61,40 @@ impl Ndf for Gtr {
         place: GAMMA,
     }];
     /// y ≤ 128 where f is above 1e-30 sr⁻¹.
-    const VALUE_F32: f64 = (40.0 + 9.0 * 128.0) / (1 << 24) as f64;
-    const INTEGRAL_F32: f64 = crate::base::precision::INTEGRAL_F32 + PEAK_F32;
+    const F32: Rounding = Rounding {
+        value: (40.0 + 9.0 * 128.0) / (1 << 24) as f64,
+        value_at: Some(|s| {
+            let most = -2.0 * s.parameters[GAMMA] * s.alpha.ln();
+            roundings(most.min(128.0))
+        }),
+        integral: crate::base::precision::INTEGRAL_F32 + PEAK_F32,
+        faint: None,
+    };
     /// [`side`]/α of γ = 1 and α = 1/1000, where ωi grazes; the others' measured there, and of the clearcoat's at α = 1.
-    const RHO_BOUNDS: &'static [(&'static str, f64)] = &[
-        ("smith-correlated", 144.63),
-        ("smith-separable", 144.63),
-        ("schlick-ggx", 144.63),
-        ("disney-clearcoat", 3.438),
-    ];
-
-    fn value_f32(s: &Setting) -> f64 {
-        let most = -2.0 * s.parameters[GAMMA] * s.alpha.ln();
-        roundings(most.min(128.0))
-    }
-
-    fn rho_most(s: &Setting) -> f64 {
-        (side(s) / s.alpha).max(1.0)
-    }
+    const ALBEDO: Albedo = Albedo {
+        bounds: &[
+            ("smith-correlated", 144.63),
+            ("smith-separable", 144.63),
+            ("schlick-ggx", 144.63),
+            ("smith-joint-approx", 144.63),
+            ("disney-clearcoat", 3.438),
+        ],
+        bound_at,
+        ..Albedo::CONSERVED
+    };
+    /// tan θm = α sinh v; beyond the cap, the lobe has 1e-12 of its weight, and of what G2 leaves of (ωe·ωm)/μe.
+    const MAPS: Option<Maps> = Some(Maps {
+        coarse: Coordinate { end: |t_max, s| end(t_max, 18.0, s), map },
+        fine: Coordinate { end: |t_max, s| end(t_max, 30.0, s), map },
+    });
+    const RULE: Option<Rule> = Some(Rule {
+        directions: Some(Directions {
+            samples,
+            most: |counts, of_normal| 2 * half_vector::most(&of_normal.unwrap_or(Kinks::NONE), counts),
+        }),
+        means: Some([mean, half_vector::mean]),
+        ..Rule::new(counts)
+    });
 
     fn ndf(h: &Half, hz2: f64, s: &Setting) -> f64 {
         let Setting { alpha, .. } = *s;
@@ -90,62 +105,52 @@ impl Ndf for Gtr {
     fn smith_root(mu: f64, &Setting { alpha, .. }: &Setting) -> f64 {
         (alpha * alpha + (1.0 - alpha * alpha) * mu * mu).sqrt()
     }
+}
 
-    /// tan θm = α sinh v; beyond the cap, the lobe has 1e-12 of its weight, and of what G2 leaves of (ωe·ωm)/μe.
-    fn fine_end(t_max: f64, s: &Setting) -> f64 {
-        end(t_max, 30.0, s)
-    }
+fn map(v: f64, s: &Setting) -> Map {
+    let (sinh, cosh) = (v.sinh(), v.cosh());
+    let tan = s.alpha * sinh;
+    let h2 = 1.0 + tan * tan;
+    let half = Half { ht2: tan * tan, h2, c: 1.0, one_minus_c: 0.0 };
+    // D cos θm dωm = 2π D t/(1 + t²)² dt dφ/2π
+    let weight = TAU * Gtr::ndf(&half, 1.0, s) * tan / (h2 * h2) * s.alpha * cosh;
+    Map { p: tan, m: 1.0, weight }
+}
 
-    fn coarse_end(t_max: f64, s: &Setting) -> f64 {
-        end(t_max, 18.0, s)
-    }
+fn samples(
+    fixed: &Fixed,
+    s: &Setting,
+    counts: [SlopeCounts; 2],
+    tolerance: f64,
+    of_normal: Option<Kinks>,
+) -> Vec<Sample> {
+    let tolerance = relative(tolerance, s);
+    // G2 turns where μi ~ α, that is α/μ of v before the horizon: less than that matters from γ < 2 and 1e-6 on.
+    let turn = (is_fine(tolerance) && of_normal.is_none()).then_some(HorizonTurn(s.alpha / fixed.mu));
+    half_vector::samples_with::<Gtr>(fixed, s, counts, tolerance, of_normal, turn)
+}
 
-    fn fine_map(v: f64, s: &Setting) -> Map {
-        let (sinh, cosh) = (v.sinh(), v.cosh());
-        let tan = s.alpha * sinh;
-        let h2 = 1.0 + tan * tan;
-        let half = Half { ht2: tan * tan, h2, c: 1.0, one_minus_c: 0.0 };
-        // D cos θm dωm = 2π D t/(1 + t²)² dt dφ/2π
-        let weight = TAU * Self::ndf(&half, 1.0, s) * tan / (h2 * h2) * s.alpha * cosh;
-        Map { p: tan, m: 1.0, weight }
-    }
+/// Measured for α from 1/1000 to 1 and γ from 1 to 10, worst over μ ∈ [2⁻²⁴, 1]: each count alone leaves less than a third
+/// of the tolerance. Nodes in v fall by a decade of the error for each 5.5 of them; below γ = 2 all scales between
+/// α and 1 matter, and it is up to 9.5 at α = 1/1000.
+fn counts(_mu: f64, s: &Setting, tolerance: f64) -> [SlopeCounts; 2] {
+    const AZIMUTHS: [usize; 10] = [4, 5, 6, 8, 12, 20, 22, 25, 29, 34];
+    let tolerance = relative(tolerance, s);
+    let tail = (2.0 * (2.0 - s.parameters[GAMMA])).clamp(0.0, 1.0) * s.alpha.ln() / ALPHA_LEAST.ln();
+    let nodes = 8.0 - tolerance.log10() * (5.5 + 4.0 * tail);
+    [SlopeCounts { azimuths: AZIMUTHS[decade(tolerance)], nodes: nodes.ceil() as usize }; 2]
+}
 
-    fn samples<M: Masking>(
-        fixed: &Fixed,
-        s: &Setting,
-        counts: [SlopeCounts; 2],
-        tolerance: f64,
-    ) -> Vec<Sample> {
-        let tolerance = own(tolerance, s);
-        // G2 turns where μi ~ α, that is α/μ of v before the horizon: less than that matters from γ < 2 and 1e-6 on.
-        let turn = (is_fine(tolerance) && !M::OF_NORMAL).then_some(HorizonTurn(s.alpha / fixed.mu));
-        half_vector::samples_with::<Self, M>(fixed, s, counts, tolerance, turn)
-    }
-
-    fn most<M: Masking>(counts: [SlopeCounts; 2]) -> usize {
-        2 * half_vector::most(&M::KINKS, counts)
-    }
-
-    const MEANS: Option<[Mean; 2]> = Some([mean, half_vector::mean]);
-
-    /// Measured for α from 1/1000 to 1 and γ from 1 to 10, worst over μ ∈ [2⁻²⁴, 1]: each count alone leaves less than a third
-    /// of the tolerance. Nodes in v fall by a decade of the error for each 5.5 of them; below γ = 2 all scales between
-    /// α and 1 matter, and it is up to 9.5 at α = 1/1000.
-    fn counts(_mu: f64, s: &Setting, tolerance: f64) -> [SlopeCounts; 2] {
-        const AZIMUTHS: [usize; 10] = [4, 5, 6, 8, 12, 20, 22, 25, 29, 34];
-        let tolerance = own(tolerance, s);
-        let tail = (2.0 * (2.0 - s.parameters[GAMMA])).clamp(0.0, 1.0) * s.alpha.ln() / ALPHA_LEAST.ln();
-        let nodes = 8.0 - tolerance.log10() * (5.5 + 4.0 * tail);
-        [SlopeCounts { azimuths: AZIMUTHS[decade(tolerance)], nodes: nodes.ceil() as usize }; 2]
-    }
+fn bound_at(s: &Setting) -> f64 {
+    (side(s) / s.alpha).max(1.0)
 }
 
 /// `max(.001, …)` in Disney's brdf explorer.
 pub(crate) const ALPHA_LEAST: f64 = 1e-3;
 
 /// The tolerance of ρ in units of the most it reaches, down to 1e-11.
-fn own(tolerance: f64, s: &Setting) -> f64 {
-    (tolerance / Gtr::rho_most(s)).clamp(1e-11, 0.1)
+fn relative(tolerance: f64, s: &Setting) -> f64 {
+    (tolerance / bound_at(s)).clamp(1e-11, 0.1)
 }
 
 /// Nodes in ∛μ of the mean over directions, as ρ of γ = 1 turns where μ ~ α by more than GGX's: measured for α from 1/1000
@@ -194,6 +199,7 @@ mod tests {
     use super::*;
     use crate::base::half_angle::MU_MIN;
     use crate::model;
+    use crate::model::masking::Masking;
     use crate::model::masking::ashikhmin_neubelt::AshikhminNeubelt;
     use crate::model::masking::disney_clearcoat::DisneyClearcoat;
     use crate::model::masking::kelemen::Kelemen;
@@ -240,14 +246,14 @@ mod tests {
         type Samples = fn(&Fixed, &Setting, [SlopeCounts; 2], f64) -> Vec<Sample>;
         const PLENTY: [SlopeCounts; 2] = [SlopeCounts { azimuths: 45, nodes: 120 }; 2];
         let models: [(&str, Samples); 8] = [
-            ("gtr", Gtr::samples::<SmithCorrelated>),
-            ("gtr-smith-separable-schlick", Gtr::samples::<SmithSeparable>),
-            ("gtr-schlick-ggx-schlick", Gtr::samples::<SchlickGgx>),
-            ("gtr-schlick-ggx-direct-schlick", Gtr::samples::<SchlickGgxDirect>),
-            ("gtr-ashikhmin-neubelt-schlick", Gtr::samples::<AshikhminNeubelt>),
-            ("gtr-kelemen-schlick", Gtr::samples::<Kelemen>),
-            ("gtr-disney-clearcoat-schlick", Gtr::samples::<DisneyClearcoat>),
-            ("gtr-v-cavity-schlick", Gtr::samples::<VCavity>),
+            ("gtr", |f, s, c, t| samples(f, s, c, t, SmithCorrelated::OF_NORMAL)),
+            ("gtr-smith-separable-schlick", |f, s, c, t| samples(f, s, c, t, SmithSeparable::OF_NORMAL)),
+            ("gtr-schlick-ggx-schlick", |f, s, c, t| samples(f, s, c, t, SchlickGgx::OF_NORMAL)),
+            ("gtr-schlick-ggx-direct-schlick", |f, s, c, t| samples(f, s, c, t, SchlickGgxDirect::OF_NORMAL)),
+            ("gtr-ashikhmin-neubelt-schlick", |f, s, c, t| samples(f, s, c, t, AshikhminNeubelt::OF_NORMAL)),
+            ("gtr-kelemen-schlick", |f, s, c, t| samples(f, s, c, t, Kelemen::OF_NORMAL)),
+            ("gtr-disney-clearcoat-schlick", |f, s, c, t| samples(f, s, c, t, DisneyClearcoat::OF_NORMAL)),
+            ("gtr-v-cavity-schlick", |f, s, c, t| samples(f, s, c, t, VCavity::OF_NORMAL)),
         ];
         let mut failed = Vec::new();
         for (name, plenty) in models {

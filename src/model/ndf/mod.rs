@@ -1,4 +1,6 @@
 //! Distributions of microfacet normals.
+//!
+//! What a distribution must say is D and Smith's Λ: see [`Ndf`]. The rest makes it faster or its promises sharper.
 
 pub(crate) mod beckmann;
 pub(crate) mod blinn_phong;
@@ -11,125 +13,172 @@ pub(crate) mod ggx_nodes;
 pub(crate) mod ggx_samples;
 pub(crate) mod gtr;
 pub(crate) mod stretched;
+pub(crate) mod student_t;
 
 use crate::base::half_angle::Half;
 use crate::base::quadrature::Node;
 use crate::model::directions::{Fixed, Sample};
-use crate::model::fresnel::Fresnel;
-use crate::model::masking::Masking;
+use crate::model::half_vector::Kinks;
 use crate::model::parameters::{Parameters, Setting};
-use crate::model::{Branches, Parameter, Part, Shape, SlopeCounts, Term, half_vector};
+use crate::model::{Branches, Parameter, Part, Shape, SlopeCounts, Term};
 
-/// A distribution of normals, with the maps that integrate and sample it.
+/// A distribution of normals: its name, D and Smith's Λ. All other items have defaults that are right.
 pub(crate) trait Ndf: Sized {
+    /// The name, the source and the shader.
     const TERM: Term;
-    /// The shaders of its maps, the coarse one first, for the kernel that integrates in slopes: without, the host finds
-    /// directions by the fine map.
-    const MAPS: Option<[Part; 2]> = None;
-    /// Its samplers, if it has them.
-    const SAMPLES: Option<Part> = None;
-    /// What its roughness is.
-    const SHAPE: Shape = Shape::ALPHA;
-    /// The rest of its parameters, in places 0 to 3.
-    const PARAMETERS: &'static [Parameter] = &[];
-    /// Whether shape 0 is the ideal mirror.
-    const IS_MIRROR_AT_0: bool = true;
-    /// The relative error of its values in f32.
-    const VALUE_F32: f64 = crate::base::precision::VALUE_F32;
-    /// The error of its integrals in f32, relative to the most they reach.
-    const INTEGRAL_F32: f64 = crate::base::precision::INTEGRAL_F32;
-    /// f below which f32 has lost digits to underflow, sr⁻¹, where that is earlier than of most.
-    const FAINT: Option<f64> = None;
-    /// The maskings with which ρ_dh exceeds 1, and its bound there: none, unless Λ is not Smith's of these normals, or not of
-    /// their α.
-    const RHO_BOUNDS: &'static [(&'static str, f64)] = &[];
-    /// cos θ at which ρ(μ) is not analytic, if there is such a place between grazing and the normal.
-    const SEAM: Option<f64> = None;
-    /// Where ρ(μ, α) is not analytic, if that was measured.
-    const BRANCHES: Option<Branches> = None;
 
-    /// Whether α differs along the tangent and the bitangent.
-    const STRETCHES: bool = false;
-
-    /// The relative error of its values in f32 at a setting.
-    fn value_f32(_s: &Setting) -> f64 {
-        Self::VALUE_F32
-    }
-
-    /// What ρ_dh reaches at most at a setting with Λ of its α, where that is less than with the worst.
-    fn rho_most(_s: &Setting) -> f64 {
-        f64::INFINITY
-    }
-
-    /// α along the tangent and along the bitangent.
-    fn axes(s: &Setting) -> [f64; 2] {
-        [s.alpha; 2]
-    }
-
-    /// Adds what its shader takes beside its parameters, or in place of them.
-    fn derive(_parameters: &mut Parameters) {}
-
-    /// D(ωm), sr⁻¹.
+    /// D(ωm), sr⁻¹, of the half vector h; `hz2` is the square of its component along the normal.
     fn ndf(h: &Half, hz2: f64, s: &Setting) -> f64;
 
     /// (1 + 2Λ) μ, with Smith's Λ.
     fn smith_root(mu: f64, s: &Setting) -> f64;
 
+    /// What its roughness is.
+    const SHAPE: Shape = Shape::ALPHA;
+    /// Its parameters beside the roughness, in places 0 to 3.
+    const PARAMETERS: &'static [Parameter] = &[];
+
+    /// Adds what the shader takes beside the parameters, or in place of them.
+    fn derive(_parameters: &mut Parameters) {}
+
+    /// α along the tangent and along the bitangent, where they differ.
+    const AXES: Option<fn(&Setting) -> [f64; 2]> = None;
+    /// Bounds and limits of ρ.
+    const ALBEDO: Albedo = Albedo::CONSERVED;
+    /// The errors of f32.
+    const F32: Rounding = Rounding::USUAL;
+    /// A coordinate of tan θm in which the lobe is flat.
+    const MAPS: Option<Maps> = None;
+    /// Node counts of its integrals. Without them integrals are found by adaptive quadrature.
+    const RULE: Option<Rule> = None;
+    /// How normals are drawn, for the rules that sample.
+    const DRAWS: Option<Draws> = None;
+
     /// y (1 + 2Λ) μi at μi = μe x/y.
     fn smith_root_at(x: f64, y: f64, mu_e: f64, s: &Setting) -> f64 {
         y * Self::smith_root((mu_e * x / y).clamp(0.0, 1.0), s)
     }
+}
 
-    /// Directions whose weighted values add up to ρ, cos θ dω of them; and at most how many. By the map of the normals,
-    /// unless the NDF knows better.
-    fn samples<M: Masking>(
-        fixed: &Fixed,
-        s: &Setting,
-        counts: [SlopeCounts; 2],
-        tolerance: f64,
-    ) -> Vec<Sample> {
-        half_vector::samples::<Self, M>(fixed, s, counts, tolerance)
-    }
-    fn most<M: Masking>(counts: [SlopeCounts; 2]) -> usize {
-        half_vector::most(&M::KINKS, counts)
-    }
-    /// μ and weights of the mean ρ_hh, where the rule of all models does not see what is in ρ: with a smooth masking, and
-    /// with one that has kinks.
-    const MEANS: Option<[Mean; 2]> = None;
+/// Bounds and limits of ρ.
+pub(crate) struct Albedo {
+    /// Whether shape 0 is the ideal mirror.
+    pub is_mirror_at_0: bool,
+    /// The maskings with which ρ_dh exceeds 1, and its bound there: none, unless Λ is not Smith's of these normals, or not of
+    /// their α.
+    pub bounds: &'static [(&'static str, f64)],
+    /// The bound of ρ_dh at a setting, with Λ of its α, where that is less than with the worst.
+    pub bound_at: fn(&Setting) -> f64,
+    /// cos θ at which ρ(μ) is not analytic, if there is such a place between grazing and the normal.
+    pub seam: Option<f64>,
+}
 
-    /// r at which tan θm reaches `t_max`, and the map there: of one that has a map.
-    fn fine_end(_t_max: f64, _: &Setting) -> f64 {
-        f64::NAN
-    }
-    fn fine_map(_r: f64, _: &Setting) -> Map {
-        Map { p: f64::NAN, m: f64::NAN, weight: f64::NAN }
-    }
-    /// The same for tolerances that f32 can meet.
-    fn coarse_end(t_max: f64, s: &Setting) -> f64 {
-        Self::fine_end(t_max, s)
-    }
-    fn coarse_map(r: f64, s: &Setting) -> Map {
-        Self::fine_map(r, s)
-    }
+impl Albedo {
+    /// Energy is conserved, and α → 0 is the mirror.
+    pub const CONSERVED: Self =
+        Self { is_mirror_at_0: true, bounds: &[], bound_at: |_| f64::INFINITY, seam: None };
+}
 
-    /// What a texel takes to meet a tolerance, where cos φ > 0 and where it is < 0.
-    fn counts(mu: f64, s: &Setting, tolerance: f64) -> [SlopeCounts; 2];
+/// The errors of f32.
+pub(crate) struct Rounding {
+    /// The relative error of values, the worst of all settings.
+    pub value: f64,
+    /// The relative error of values at a setting, where that is known.
+    pub value_at: Option<fn(&Setting) -> f64>,
+    /// The error of integrals, relative to the most they reach.
+    pub integral: f64,
+    /// f below which f32 has lost digits to underflow, sr⁻¹, where that is earlier than of most.
+    pub faint: Option<f64>,
+}
 
-    /// f μi / p for a draw of D cos θm, and for one of the normals that ωe sees: of one that has samplers.
-    fn by_ndf<M: Masking, F: Fresnel>(_draw: [f64; 2], _mu_e: f64, _: &Setting) -> [f64; 2] {
-        [f64::NAN; 2]
-    }
-    fn by_vndf<M: Masking, F: Fresnel>(_draw: [f64; 2], _mu_e: f64, _: &Setting) -> [f64; 2] {
-        [f64::NAN; 2]
+impl Rounding {
+    /// The budget of a lobe whose D takes five roundings.
+    pub const USUAL: Self = Self {
+        value: crate::base::precision::VALUE_F32,
+        value_at: None,
+        integral: crate::base::precision::INTEGRAL_F32,
+        faint: None,
+    };
+}
+
+/// A coordinate r of tan θm, for tolerances that f32 can meet, and for finer ones.
+pub(crate) struct Maps {
+    pub coarse: Coordinate,
+    pub fine: Coordinate,
+}
+
+impl Maps {
+    /// The same coordinate for all tolerances.
+    pub const fn both(coordinate: Coordinate) -> Self {
+        Self { coarse: coordinate, fine: coordinate }
     }
 }
 
-/// cos θ of directions and their weights in the mean ∫ ρ 2μ dμ, at a tolerance.
-pub(crate) type Mean = fn(tolerance: f64) -> Vec<Node>;
+/// A coordinate r of tan θm, from 0.
+#[derive(Clone, Copy)]
+pub(crate) struct Coordinate {
+    /// r at which tan θm reaches `t_max`, or at which the rest of the lobe is negligible.
+    pub end: fn(t_max: f64, &Setting) -> f64,
+    /// tan θm at r.
+    pub map: fn(r: f64, &Setting) -> Map,
+}
 
 /// A map's tan θm = p/m at r, and `weight` = w dv/dr / m, where D cos θm dωm = w dv dφ / 2π.
 pub(crate) struct Map {
     pub p: f64,
     pub m: f64,
     pub weight: f64,
+}
+
+/// Node counts of integrals with height-correlated Smith and Schlick, and what goes by them.
+pub(crate) struct Rule {
+    /// The counts of a texel for a tolerance, where cos φ > 0 and where it is < 0.
+    pub counts: fn(mu: f64, &Setting, tolerance: f64) -> [SlopeCounts; 2],
+    /// The shaders of the maps, the coarse one first, for the kernel that integrates in slopes.
+    pub kernels: Option<[Part; 2]>,
+    /// Where ρ(μ, α) is not analytic, if that was measured.
+    pub branches: Option<Branches>,
+    /// Directions that are not by the map alone.
+    pub directions: Option<Directions>,
+    /// μ and weights of the mean ρ_hh, where the rule of all models does not see what is in ρ: with a smooth masking, and
+    /// with one that has kinks.
+    pub means: Option<[Mean; 2]>,
+}
+
+impl Rule {
+    /// The counts alone.
+    pub const fn new(counts: fn(f64, &Setting, f64) -> [SlopeCounts; 2]) -> Self {
+        Self { counts, kernels: None, branches: None, directions: None, means: None }
+    }
+}
+
+/// Directions whose weighted values add up to ρ, cos θ dω of them; and at most how many. `of_normal` are the kinks of a
+/// masking that depends on ωm.
+#[derive(Clone, Copy)]
+pub(crate) struct Directions {
+    pub samples:
+        fn(&Fixed, &Setting, [SlopeCounts; 2], tolerance: f64, of_normal: Option<Kinks>) -> Vec<Sample>,
+    pub most: fn([SlopeCounts; 2], of_normal: Option<Kinks>) -> usize,
+}
+
+/// cos θ of directions and their weights in the mean ∫ ρ 2μ dμ, at a tolerance.
+pub(crate) type Mean = fn(tolerance: f64) -> Vec<Node>;
+
+/// How normals are drawn, for the rules that sample.
+pub(crate) struct Draws {
+    /// The functions that the sampling kernels call.
+    pub part: Part,
+    /// A draw of D cos θm.
+    pub by_ndf: fn(draw: [f64; 2], mu_e: f64, &Setting) -> Draw,
+    /// A draw of the normals that ωe sees.
+    pub by_vndf: fn(draw: [f64; 2], mu_e: f64, &Setting) -> Draw,
+}
+
+/// A normal (x, ·, m)/√(m² + t2), x along the azimuth of ωe. With q = ωe·ωm √(m² + t2)/μe, its estimate of ρ is
+/// F G2 z (weight\[0\] q + weight\[1\]) / 2μe z, z = (m² + t2) μi/μe.
+pub(crate) struct Draw {
+    pub x: f64,
+    pub t2: f64,
+    pub m: f64,
+    pub weight: [f64; 2],
 }

@@ -16,7 +16,7 @@
 
 use crate::base::half_angle::Half;
 use crate::base::tolerance::decade;
-use crate::model::ndf::{Map, Ndf};
+use crate::model::ndf::{Albedo, Maps, Ndf, Rounding, Rule};
 use crate::model::parameters::{Parameters, Setting};
 use crate::model::{ALPHA_MIN_VALUE, Parameter, Shape, SlopeCounts, Term};
 use std::marker::PhantomData;
@@ -29,8 +29,8 @@ pub(crate) trait Stretch: Ndf {
     /// of the larger α to the other. A component of the tangential half vector is off by 4 √2 roundings of its length, which
     /// is at worst r/2 times as much of ht² (stretched); D has that twice (GGX), or times its exponent (Beckmann).
     const ROUNDINGS: [f64; 2];
-    /// As [`Ndf::RHO_BOUNDS`], measured where α = 1 and the aspect is 100: along grooves of αx = 10.
-    const RHO_BOUNDS: &'static [(&'static str, f64)];
+    /// As [`Albedo::bounds`], measured where α = 1 and the aspect is 100: along grooves of αx = 10.
+    const BOUNDS: &'static [(&'static str, f64)];
     /// Azimuths of each of eight panels and nodes of each azimuth, for tolerances 1e-1 … 1e-10: their errors alone are below
     /// half of these, worst over μ, φ, α and aspects of 0.01 to 100, down to 1e-7. Finer ones would take more turns of a loop
     /// than every driver runs.
@@ -65,27 +65,31 @@ impl<N: Stretch> Ndf for Stretched<N> {
             place: STRENGTH,
         },
     ];
-    const STRETCHES: bool = true;
-    const RHO_BOUNDS: &'static [(&'static str, f64)] = <N as Stretch>::RHO_BOUNDS;
-    const VALUE_F32: f64 = (N::ROUNDINGS[0] + N::ROUNDINGS[1]) / (1 << 24) as f64;
-
-    fn value_f32(s: &Setting) -> f64 {
-        let [x, y] = Self::axes(s);
-        (N::ROUNDINGS[0] + N::ROUNDINGS[1] * (x / y).max(y / x)) / f64::from(1 << 24)
-    }
+    const AXES: Option<fn(&Setting) -> [f64; 2]> = Some(axes);
+    const ALBEDO: Albedo = Albedo { bounds: N::BOUNDS, ..Albedo::CONSERVED };
+    const F32: Rounding = Rounding {
+        value: (N::ROUNDINGS[0] + N::ROUNDINGS[1]) / (1 << 24) as f64,
+        value_at: Some(|s| {
+            let [x, y] = axes(s);
+            (N::ROUNDINGS[0] + N::ROUNDINGS[1] * (x / y).max(y / x)) / f64::from(1 << 24)
+        }),
+        ..Rounding::USUAL
+    };
+    /// The fine one alone, which is its own twin along every azimuth.
+    const MAPS: Option<Maps> = match N::MAPS {
+        Some(maps) => Some(Maps::both(maps.fine)),
+        None => None,
+    };
+    const RULE: Option<Rule> = Some(Rule::new(|_, _, tolerance| {
+        let [azimuths, nodes] = N::COUNTS[decade(tolerance)];
+        [SlopeCounts { azimuths, nodes }; 2]
+    }));
 
     fn derive(parameters: &mut Parameters) {
         let root = parameters[ASPECT].sqrt();
         let strength = parameters[STRENGTH];
         [parameters[ASPECT], parameters[STRENGTH], parameters[INVERSE]] =
             [root, strength * strength, 1.0 / root];
-    }
-
-    fn axes(&Setting { alpha, parameters }: &Setting) -> [f64; 2] {
-        let (root, strength) = (parameters[ASPECT].sqrt(), parameters[STRENGTH]);
-        let alpha = if strength > 0.0 { alpha.max(ALPHA_MIN_VALUE) } else { alpha };
-        let x = alpha * root;
-        [x + (1.0 - x) * strength * strength, alpha / root]
     }
 
     fn ndf(h: &Half, hz2: f64, s: &Setting) -> f64 {
@@ -95,17 +99,12 @@ impl<N: Stretch> Ndf for Stretched<N> {
     fn smith_root(mu: f64, s: &Setting) -> f64 {
         N::smith_root(mu, s)
     }
+}
 
-    fn fine_end(t_max: f64, s: &Setting) -> f64 {
-        N::fine_end(t_max, s)
-    }
-
-    fn fine_map(r: f64, s: &Setting) -> Map {
-        N::fine_map(r, s)
-    }
-
-    fn counts(_mu: f64, _: &Setting, tolerance: f64) -> [SlopeCounts; 2] {
-        let [azimuths, nodes] = N::COUNTS[decade(tolerance)];
-        [SlopeCounts { azimuths, nodes }; 2]
-    }
+/// αx and αy.
+fn axes(&Setting { alpha, parameters }: &Setting) -> [f64; 2] {
+    let (root, strength) = (parameters[ASPECT].sqrt(), parameters[STRENGTH]);
+    let alpha = if strength > 0.0 { alpha.max(ALPHA_MIN_VALUE) } else { alpha };
+    let x = alpha * root;
+    [x + (1.0 - x) * strength * strength, alpha / root]
 }

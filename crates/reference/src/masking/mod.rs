@@ -6,6 +6,7 @@ pub(crate) mod kelemen;
 pub(crate) mod none;
 pub(crate) mod schlick_ggx;
 pub(crate) mod smith_correlated;
+pub(crate) mod smith_joint_approx;
 pub(crate) mod smith_separable;
 pub(crate) mod v_cavity;
 
@@ -19,7 +20,8 @@ pub(crate) struct Facet {
     pub cos_d: f64,
     /// cos θm
     pub cos_m: f64,
-    pub alpha: f64,
+    /// α that is seen from both.
+    pub alpha: [f64; 2],
 }
 
 /// G2(ωi, ωe): the share of microfacets that are neither masked nor shadowed.

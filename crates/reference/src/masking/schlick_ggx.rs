@@ -10,18 +10,21 @@ pub(crate) struct SchlickGgxDirect;
 
 impl Masking for SchlickGgx {
     fn g2(&self, facet: &Facet) -> f64 {
-        g2(facet, facet.alpha / 2.0)
+        g2(facet, |alpha| alpha / 2.0)
     }
 }
 
 impl Masking for SchlickGgxDirect {
     fn g2(&self, facet: &Facet) -> f64 {
-        let roughness = facet.alpha.sqrt();
-        g2(facet, (roughness + 1.0).powi(2) / 8.0)
+        g2(facet, |alpha| (alpha.sqrt() + 1.0).powi(2) / 8.0)
     }
 }
 
 /// Schlick 1994: G(v) = n·v / (n·v (1 − k) + k) for each direction.
-fn g2(facet: &Facet, k: f64) -> f64 {
-    facet.mu.map(|mu| mu / (mu * (1.0 - k) + k)).iter().product()
+fn g2(facet: &Facet, k: impl Fn(f64) -> f64) -> f64 {
+    let g1 = |at: usize| {
+        let (mu, k) = (facet.mu[at], k(facet.alpha[at]));
+        mu / (mu * (1.0 - k) + k)
+    };
+    g1(0) * g1(1)
 }

@@ -5,6 +5,7 @@ pub(crate) mod blinn_phong;
 pub(crate) mod charlie;
 pub(crate) mod ggx;
 pub(crate) mod gtr;
+pub(crate) mod student_t;
 
 use crate::measure::Measure;
 use crate::setting::Parameters;
