@@ -7,15 +7,13 @@
 
 use gonio::backend::gpu::DeviceChoice;
 use gonio::bake::{Evaluator, Unobserved};
-use gonio::base::precision::VALUE_F32;
 use gonio::base::quadrature::gauss_legendre;
 use gonio::base::timings::Timings;
 use gonio::check::{self, Check};
-use gonio::model;
 use gonio::model::directions::{Fixed, Map, Sample};
 use gonio::model::lobe::Lobe;
 use gonio::model::parameters;
-use gonio::model::{Component, Integral, Model, Part};
+use gonio::model::{Integral, Model, ModelBuilder};
 use gonio::plan::TablePlan;
 use gonio::reference::{Angles, MIN_MU, Reference, Setting};
 use gonio::table::axis::{Axis, Variable};
@@ -24,25 +22,19 @@ use gonio::verify;
 use gonio::verify::{Options, Sum};
 use std::f64::consts::PI;
 
-static MODEL: Model = Model {
-    name: "lommel-seeliger",
-    summary: "dark dust, as of the Moon: f = w/(4π (μi + μe))",
-    source: "Seeliger 1888; Hapke 2012, eq. 8.35",
-    microfacet: None,
-    components: &[Component { name: "A", weight: "albedo", default: Some(0.1) }],
-    shape: None,
-    parameters: &[],
-    derive: |_| {},
-    rho_bound: 1.0,
-    parts: &[Part::new(
-        "custom/lommel_seeliger",
-        "fn lobe(p: Pair, a: Azimuth, alpha: real, row: real) -> real2 { return real2(row, 0.0); }
-         fn lobe_row(p: Pair, alpha: real) -> real { return 0.25 * INV_PI / (p.mu_i + p.mu_e); }",
-    )],
-    integral: Integral::Mapped(Map { samples, most: |_, _| 2 * NODES, mean: None, limit: |_, _| None }),
-    value_f32: VALUE_F32,
-    lobe: |p, _, _| [0.25 / (PI * (p.mu_i + p.mu_e)), 0.0],
-};
+fn lommel_seeliger() -> ModelBuilder {
+    Model::builder("lommel-seeliger")
+        .describe("dark dust, as of the Moon: f = w/(4π (μi + μe))", "Seeliger 1888; Hapke 2012, eq. 8.35")
+        .component("albedo", Some(0.1))
+        .shader(
+            "custom/lommel_seeliger",
+            "fn lobe(p: Pair, a: Azimuth, alpha: real, row: real) -> real2 { return real2(row, 0.0); }
+             fn lobe_row(p: Pair, alpha: real) -> real { return 0.25 * INV_PI / (p.mu_i + p.mu_e); }",
+        )
+        .twin(|p, _, _| [0.25 / (PI * (p.mu_i + p.mu_e)), 0.0])
+        .integral(Integral::Mapped(Map { samples, most: |_, _| 2 * NODES, mean: None, limit: |_, _| None }))
+        .rho_bound(1.0)
+}
 
 /// f turns at μe ≈ μi, however small that is: nodes crowd at the horizon, μe = x⁸.
 const NODES: usize = 24;
@@ -73,18 +65,18 @@ impl Reference for LommelSeeliger {
 }
 
 fn main() -> gonio::Result<()> {
-    gonio::shader::register(&MODEL)?;
-    check::register_reference(&MODEL, &LommelSeeliger)?;
+    let model = gonio::shader::register(lommel_seeliger())?;
+    check::register_reference(model, &LommelSeeliger)?;
     let (evaluator, line) = Evaluator::choose(&DeviceChoice::Auto)?;
     println!("{line}");
 
     let axes = vec![Axis::natural(Variable::ThetaI, 64)?];
-    let plan = TablePlan::basis("moon", &RHO_DH, model::find("lommel-seeliger")?, None, axes)?;
+    let plan = TablePlan::basis("moon", &RHO_DH, model, None, axes)?;
     let table =
         evaluator.bake(&plan.with_tolerance(1e-6)?, Check::All, &mut Timings::default(), &Unobserved)?;
     println!("ρ_dh of 64 θi: {:.1e} off at most", table.error.measured_max.unwrap_or(f64::NAN));
 
-    let mut subject = Sum::model(&evaluator, Lobe::new(&MODEL, None, vec![[1.0, 0.0]; 3])?, vec![])?;
+    let mut subject = Sum::model(&evaluator, Lobe::new(model, None, vec![[1.0, 0.0]; 3])?, vec![])?;
     let report =
         verify::check(&mut subject, &Options { budget: 1_000_000, ..Options::default() }, &Unobserved)?;
     for finding in &report.findings {

@@ -4,6 +4,7 @@
 //! evaluation in f64, which bakes where there is no device. The *reference* of a part is not here:
 //! the crate `gonio-reference` has it, written from the paper and sharing nothing with this module.
 
+mod builder;
 mod classic;
 pub mod compensation;
 mod diffuse;
@@ -22,6 +23,7 @@ pub(crate) mod slope_azimuths;
 #[cfg(test)]
 pub(crate) mod truth;
 
+pub use builder::{ModelBuilder, Twin};
 pub use fresnel::metals::{METALS, Metal};
 pub use microfacet::{FRESNELS, MASKINGS, MICROFACETS, MIRRORS, Microfacet};
 pub use roughness::{Parameter, Roughness, Shape};
@@ -36,6 +38,7 @@ use std::sync::{PoisonError, RwLock};
 
 /// A reflection model: f = a·A + b·B with weights that a material gives and components that the
 /// model evaluates, so that colours never enter a basis.
+#[non_exhaustive]
 pub struct Model {
     /// The name in recipes, files and manifests.
     pub name: &'static str,
@@ -70,6 +73,7 @@ pub struct Model {
 /// A promise of a BRDF that a model, or a format's way to add models up, is known to break: reported as such,
 /// and held to its bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Violation {
     /// The promise, by its name in [`promises`](crate::verify).
     pub property: &'static str,
@@ -81,6 +85,7 @@ pub struct Violation {
 
 /// A component of a model, and what a material weighs it with.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Component {
     /// Its channel's name.
     pub name: &'static str,
@@ -92,6 +97,7 @@ pub struct Component {
 
 /// A part that recipes choose by its name.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Term {
     /// The name in recipes.
     pub name: &'static str,
@@ -105,6 +111,7 @@ pub struct Term {
 
 /// A file of WGSL.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Part {
     /// Its path below `shaders/`, without the extension.
     pub name: &'static str,

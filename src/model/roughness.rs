@@ -30,6 +30,7 @@ impl Roughness {
 
 /// How rough a lobe is: every model takes a perceptual roughness in [0, 1], and evaluates its own measure of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Shape {
     /// What recipes may give in place of the roughness: `alpha`; `roughness` where that is what it evaluates.
     pub name: &'static str,
@@ -55,6 +56,7 @@ pub struct Shape {
 
 /// A number that a model takes beside its roughness and the weights of its components.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Parameter {
     /// The name in recipes.
     pub name: &'static str,

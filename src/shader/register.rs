@@ -3,14 +3,15 @@
 use super::{Kernel, compose, validate};
 use crate::base::error::{Error, Result};
 use crate::base::precision::Precision;
-use crate::model::{self, Model};
+use crate::model::{self, Model, ModelBuilder};
 
-/// Makes a model of an embedder's own known by its name, to recipes, plans and checks as any other: see
+/// Makes a model of an embedder's own known by its name, so that recipes, plans and checks find it as any other: see
 /// `examples/custom.rs`.
 ///
 /// # Errors
-/// When a model of this name is known, or its shader is not valid.
-pub fn register(model: &'static Model) -> Result<()> {
+/// When a model of this name is known, something of the model is missing, or its shader is not valid.
+pub fn register(model: ModelBuilder) -> Result<&'static Model> {
+    let model = model.build()?;
     if model::find(model.name).is_ok() {
         return Err(Error::input(format!(
             "there is a model \"{}\" already; give yours another name",
@@ -23,5 +24,5 @@ pub fn register(model: &'static Model) -> Result<()> {
         validate(&source, Precision::F32).map_err(why)?;
     }
     model::add_registered(model);
-    Ok(())
+    Ok(model)
 }

@@ -8,9 +8,10 @@ use gonio::base::angles::Angles;
 use gonio::base::timings::Timings;
 use gonio::base::tolerance::Tolerance;
 use gonio::check::Check;
-use gonio::model::Roughness;
 use gonio::model::lobe::Lobe;
+use gonio::model::{Integral, Model, Roughness};
 use gonio::plan::TablePlan;
+use gonio::shader::register;
 use gonio::table::axis::{Axis, Variable};
 use gonio::table::quantity::{BRDF, RHO_DH, SPLIT_SUM};
 
@@ -105,6 +106,35 @@ fn parameters_go_by_their_names() {
     let mut rough = Lobe::new(model("oren-nayar"), None, vec![[1.0, 0.0]]).unwrap();
     rough.set("sigma", std::f64::consts::FRAC_PI_2).unwrap();
     assert_eq!(rough.roughness(), Some(1.0));
+}
+
+/// A model of an embedder's own is checked when it is registered.
+#[test]
+fn a_model_is_built_and_not_written() {
+    let whole = || {
+        Model::builder("api-test")
+            .describe("Lambert's law again", "Lambert 1760")
+            .component("albedo", Some(1.0))
+            .shader(
+                "api/test",
+                "fn lobe(p: Pair, a: Azimuth, alpha: real, row: real) -> real2 { return real2(INV_PI, 0.0); }
+                 fn lobe_row(p: Pair, alpha: real) -> real { return 0.0; }",
+            )
+            .twin(|_, _, _| [std::f64::consts::FRAC_1_PI, 0.0])
+            .integral(Integral::Smooth(|_| [16, 2]))
+            .rho_bound(1.0)
+    };
+    refused(register(Model::builder("api-test")), "give both");
+    refused(register(Model::builder("No Word")), "lower-case letters");
+    refused(register(whole().component("b", None).component("c", None)), "give one or two");
+    refused(register(whole().rho_bound(f64::NAN)), "give a number above 0");
+    refused(register(whole().parameter("x", "", "", [1.0, 0.0], None)), "no interval");
+    refused(register(whole().parameter("x", "", "", [0.0, 1.0], Some(2.0))), "outside [0, 1]");
+    let model = register(whole()).unwrap();
+    refused(register(whole()), "give yours another name");
+    let plan = TablePlan::basis("t", &RHO_DH, model, None, vec![theta_i()]).unwrap();
+    let table = Evaluator::Cpu.bake(&plan, Check::Sample(0), &mut Timings::default(), &Unobserved).unwrap();
+    assert!(table.values.iter().all(|rho| (rho - 1.0).abs() < 1e-4), "{:?}", table.values);
 }
 
 /// An engine's own device bakes, evaluates points and keeps its handlers: what gonio causes comes back as an error.
