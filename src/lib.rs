@@ -10,39 +10,38 @@
 //! ```
 //!
 //! One abstraction carries everything: **table = quantity × axes × subject**. A DFG look-up table is
-//! [`split_sum`](quantity::SPLIT_SUM) of the GGX basis over (roughness, μ); a goniometer's sweep is
-//! [`brdf`](quantity::BRDF) over (θi, θe, δφ).
+//! [`split_sum`](table::quantity::SPLIT_SUM) of the GGX basis over (roughness, μ); a goniometer's sweep is
+//! [`brdf`](table::quantity::BRDF) over (θi, θe, δφ).
 //!
-//! | module | what it knows | what it must not know |
-//! |---|---|---|
-//! | [`scene`] | materials, and the ranges their parameters take | devices, resolutions |
-//! | [`plan`] | which tables, over which axes, by which rule: plain data | devices, files |
-//! | [`models`] | the parts and models: WGSL, and its f64 twin for the CPU path | the reference |
-//! | [`gpu`] | composing, validating and recording the kernels that a plan needs | scenes, files |
-//! | [`mod@reference`] | the textbook's formulas in f64, adaptive quadrature | everything else |
-//! | [`check`] | a table's texels against the reference | how they were computed |
-//! | [`promises`] | what a BRDF promises, and the worst input that breaks it | how it is evaluated |
-//! | [`trade`] | every method at every cost: time and error, and the front | files, devices |
-//! | [`atlas`] | what f32 loses against f64, by model and decade of α; the published forms of GGX | how values are computed |
-//! | [`bake`] | the order of it all: evaluate, look, check, write | how any of it is done |
-//! | `portrait` | what a picture of a BRDF shows: lobes, lit spheres, ρ_dh | how it is drawn |
-//! | [`points`] | values at any list of pairs of directions, unlooked at | tables, files |
-//! | [`factor`] | what a lobe is multiplied with by the two cosines: compensation, coats, sheen | azimuths, devices |
-//! | [`mapped`] | integrals by directions that the host finds, for lobes that no kernel has a map for | where a lobe lives: the models |
-//! | [`radiometry`] | solid angles, beams, photons: SI | everything else |
-//! | [`light`] | environment maps and other lights; irradiance, harmonics, exitant radiance, radiosity | files, pictures |
-//! | [`table`], [`axis`], [`quantity`], [`storage`], [`setting`] | what a table is | where it came from |
-//! | `work`, `slopes`, `sampling`, `spread` | the rules: nodes, weights, matrices, in f64 | devices |
-//! | `interpolation`, `optimise` | what a bilinear reader gets, and the cheapest table for it | devices |
-//! | `files` | EXR, NPY, PNG, the manifest; sets written all or nothing | physics |
+//! Modules stand in layers: each uses those above it in this table and none below. Features are in parentheses.
 //!
-//! Three evaluations of each model exist, on purpose. The **shader** and its **twin** (same file name,
-//! same formulas, from angles, in f32 and f64) bake; the **reference** (the crate `gonio-reference`, written
-//! from the papers, from half vectors) judges both and shares nothing with them.
+//! | module | what it has |
+//! |---|---|
+//! | [`base`] | errors, the tolerance and how it is spent, f32 budgets, angles, quadrature, solid angles |
+//! | [`table`] | what a table is: axes, quantities, storage, rules, values and their error |
+//! | [`model`] | the models and the parts that they are made of: shaders and f64 twins |
+//! | [`plan`] | one table to bake, checked once and then immutable |
+//! | `integrate` | nodes, weights and matrices in f64, for the device and the CPU path |
+//! | [`shader`] | composing and validating WGSL, registering a model of your own |
+//! | [`backend`] | the CPU path, and the device through wgpu: [`Baker`](backend::gpu::Baker) and [`Device`](backend::gpu::Device) |
+//! | `check` (check) | comparison with the reference, the error of bilinear look-ups, the smallest table |
+//! | [`bake`] | evaluate, certify, check; values at any list of pairs of directions |
+//! | `scene` (scene) | glTF scenes, recipes, materials, and the planner of their tables |
+//! | `io` (files) | EXR, NPY, PNG, targets, the manifest; sets that are written all or nothing |
+//! | `light` (light) | environment maps, skies; irradiance, harmonics, exitant radiance, radiosity |
+//! | `verify` (verify) | the properties of a BRDF, and the worst input that breaks them |
+//! | `batch` (batch) | all tables of a scene into one folder |
+//! | `lab` (lab) | what f32 loses, and what each method costs |
 //!
-//! A scene bakes **bases**, not colours: a model with unit weights over the roughness that occurs. Its
-//! components A and B are what F0 and F90 multiply, so a material is weights on bases,
-//! f = Σ (a·A + b·B), and the manifest has the weights.
+//! `docs/architecture.md` in the repository says what each must not know, and how to add a part, a quantity, a format or
+//! a target. `docs/slope_map.md` derives the integrals of microfacet lobes.
+//!
+//! Three evaluations of each model exist, on purpose. The **shader** and its **twin** (same file name, same formulas, from
+//! angles, in f32 and f64) bake. The **reference** (the crate `gonio-reference`, written from the papers, from half
+//! vectors) judges both and shares nothing with them.
+//!
+//! A scene bakes **bases**, not colours: a model with unit weights over the roughness that occurs. Its components A and B
+//! are what F0 and F90 multiply, so a material is weights on bases, f = Σ (a·A + b·B), and the manifest has the weights.
 //!
 //! # Conventions
 //!
@@ -53,24 +52,60 @@
 //!
 //! # Embedding
 //!
-//! [`gpu::Baker`] works on your `wgpu::Device`, records into your encoder and returns a buffer or a
+//! [`Baker`](backend::gpu::Baker) works on your `wgpu::Device`, records into your encoder and returns a buffer or a
 //! texture, without read-back:
 //!
-//! ```no_run
-//! use gonio::{axis::{Axis, Variable}, gpu::{Baker, TextureFormat}, models, plan::TablePlan, quantity, wgpu};
+//! ```
+//! use gonio::backend::gpu::{Baker, TextureFormat};
+//! use gonio::plan::TablePlan;
+//! use gonio::table::axis::{Axis, Variable};
+//! use gonio::table::quantity::SPLIT_SUM;
+//! use gonio::{model, wgpu};
 //!
-//! fn dfg(device: &wgpu::Device, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder) -> gonio::Result<wgpu::Texture> {
+//! fn dfg(
+//!     device: &wgpu::Device,
+//!     queue: &wgpu::Queue,
+//!     encoder: &mut wgpu::CommandEncoder,
+//! ) -> gonio::Result<wgpu::Texture> {
 //!     let axes = vec![Axis::natural(Variable::Roughness, 64)?, Axis::natural(Variable::Mu, 64)?];
-//!     let table = TablePlan::basis("dfg", &quantity::SPLIT_SUM, model::find("ggx")?, None, axes)?;
+//!     let table = TablePlan::basis("dfg", &SPLIT_SUM, model::find("ggx")?, None, axes)?;
 //!     Baker::new(device, queue).record_texture(encoder, &table, TextureFormat::Rg16Float)
+//! }
+//! ```
+//!
+//! [`Device::from_wgpu`](backend::gpu::Device::from_wgpu) makes an [`Evaluator`](bake::Evaluator) of your device. It bakes,
+//! certifies and returns tables to the host, as the command does:
+//!
+//! ```
+//! use gonio::backend::gpu::Device;
+//! use gonio::bake::{Evaluator, Unobserved};
+//! use gonio::base::timings::Timings;
+//! use gonio::plan::TablePlan;
+//! use gonio::table::{Check, Table};
+//! use gonio::wgpu;
+//!
+//! fn bake(device: &wgpu::Device, queue: &wgpu::Queue, plan: &TablePlan) -> gonio::Result<Table> {
+//!     let evaluator = Evaluator::Device(Box::new(Device::from_wgpu(device, queue)));
+//!     evaluator.bake(plan, Check::Sample(0), &mut Timings::default(), &Unobserved)
 //! }
 //! ```
 //!
 //! # Features
 //!
-//! Without any feature (`default-features = false`) the crate bakes tables, on a device or the CPU, and nothing else:
-//! that is what an embedder takes, who has opened a `wgpu::Device` already. `Cargo.toml` says what each feature adds;
-//! `cli`, the default, is the command and has all of them.
+//! Without any feature (`default-features = false`) the crate bakes tables, on a device or the CPU, and nothing else. That
+//! is enough for an embedder who has opened a `wgpu::Device`.
+//!
+//! | feature | what it adds |
+//! |---|---|
+//! | `check` | comparison with the f64 reference, the error of bilinear look-ups, the smallest table |
+//! | `scene` | scenes and recipes (glTF, TOML), and the plan of their tables; has `check` |
+//! | `files` | table files and their manifest: EXR, NPY, PNG previews |
+//! | `batch` | all tables of a scene into a folder, larger than memory if need be; has `files`, `scene` |
+//! | `verify` | reciprocity, energy, symmetry, finite values of a BRDF or a WGSL function; has `scene` |
+//! | `light` | environment maps, skies, irradiance, harmonics, exitant radiance, radiosity; has `scene` |
+//! | `lab` | the atlas of f32 errors and the trade-off of methods; has `files`, `verify` |
+//! | `cli` (default) | the command and its figures, and all of the above, with `vulkan`, `metal` and `dx12` |
+//! | `vulkan`, `vulkan-portability`, `metal`, `dx12`, `gles`, `webgpu` | that back end of wgpu |
 
 // Helpers that only another feature's room uses are dead in a build with some features. The builds with none and with
 // all are held to have no dead code.

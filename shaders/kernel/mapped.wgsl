@@ -1,6 +1,6 @@
 // Hemispherical integrals by directions that the host found: one invocation a result, which sums its own in
 // blocks of blocks, so that rounding grows with the cube root of their number.
-// Some drivers stop long loops: `src/gpu/loops.rs` counts these before they are run.
+// Some drivers stop long loops: `src/backend/gpu/loop_limit.rs` counts these before they are run.
 
 @group(0) @binding(2) var<storage, read> alphas: array<real>;
 @group(0) @binding(3) var<storage, read> ranges: array<vec2u>; // of each result's points

@@ -1,6 +1,6 @@
 // Hemispherical integrals over (θe, δφ), whatever the nodes: one invocation a (roughness, θi, θe),
 // which sums the azimuths in blocks, so that rounding grows with the root of their number.
-// Some drivers stop long loops: `src/gpu/loops.rs` counts these before they are run.
+// Some drivers stop long loops: `src/backend/gpu/loop_limit.rs` counts these before they are run.
 
 /// A Pair without what tells azimuths from each other: models that do are not integrated so.
 struct Plain {

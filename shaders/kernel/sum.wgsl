@@ -2,7 +2,7 @@
 //     out[c, u] = Σ M[c, n] raw[u, n].
 // One row of weights makes each texel the sum of its own results. Two matrices, one after the other, spread
 // results at the sources of both axes over a table. One invocation makes 4 × 4 of them, in blocks.
-// Some drivers stop long loops: `src/gpu/loops.rs` counts these before they are run.
+// Some drivers stop long loops: `src/backend/gpu/loop_limit.rs` counts these before they are run.
 
 @group(0) @binding(2) var<storage, read> matrix: array<real4>; // of each four rows, column after column; padded by 0
 @group(0) @binding(3) var<storage, read> raw: array<real2>;

@@ -1,7 +1,7 @@
 // What drivers do to shaders and WGSL leaves open, by inputs whose results tell. They come from the host: what a
 // compiler knows it computes by itself.
 
-/// `Given` of `src/gpu/canary.rs`.
+/// `Given` of `src/backend/gpu/driver_probe.rs`.
 struct Given {
     turns: u32,
     x: f32,         // x² + minus_x2 is 0 if x² is rounded, …
@@ -14,7 +14,7 @@ struct Given {
     nan: f32,
 }
 
-/// `Found` of `src/gpu/canary.rs`.
+/// `Found` of `src/backend/gpu/driver_probe.rs`.
 struct Found {
     product_and_sum: u32,
     fma: u32,

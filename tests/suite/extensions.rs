@@ -187,7 +187,7 @@ fn models(material: &Material) -> Vec<&str> {
 const CHARLIE: &str = "charlie-smith-correlated-none";
 
 /// Away from grazing: some ten roundings of f32 for each lobe; of Charlie's 266 for Λ and nine for the exponent, 10 at most
-/// for these directions, of D (src/models/ndf/charlie.rs).
+/// for these directions, of D (src/model/ndf/charlie.rs).
 fn tolerance(text: &Text) -> f64 {
     if text.sheen == [0.0; 3] { 1e-6 } else { (40.0 + 266.0 + 90.0) / f64::from(1 << 24) }
 }
