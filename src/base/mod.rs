@@ -10,4 +10,5 @@ pub mod radiometry;
 pub(crate) mod sequence;
 pub mod timings;
 pub mod tolerance;
+#[cfg(feature = "files")]
 pub(crate) mod words;

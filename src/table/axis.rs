@@ -51,6 +51,7 @@ impl Variable {
     }
 
     /// The cosine of that angle.
+    #[cfg(feature = "check")]
     pub(crate) fn cosine(self, value: f64) -> f64 {
         if self == Self::Mu { value } else { value.cos() }
     }
@@ -278,6 +279,7 @@ impl Axis {
 
     /// The same samples from the last to the first, for readers whose axis runs down: the one axis whose values
     /// decrease. A square-root mapping has no reversed form, so that its values are listed.
+    #[cfg(feature = "files")]
     pub(crate) fn reversed(&self) -> Self {
         let [a, b] = self.range;
         let (mapping, positions) = match self.mapping {

@@ -2,7 +2,6 @@
 //! say of it, and a line of the registry.
 
 use crate::base::error::{Error, Result};
-use crate::base::words::alternatives;
 use crate::table::ErrorKind;
 use crate::table::axis::Variable;
 
@@ -148,8 +147,11 @@ pub fn of_a_brdf() -> impl Iterator<Item = &'static Quantity> + Clone {
 }
 
 /// The integrals of a BRDF, in words: "a, b or c".
+#[cfg(feature = "lab")]
 pub(crate) fn integrals_in_words() -> String {
-    alternatives(of_a_brdf().filter(|quantity| quantity.is_integral()).map(|quantity| quantity.name))
+    crate::base::words::alternatives(
+        of_a_brdf().filter(|quantity| quantity.is_integral()).map(|quantity| quantity.name),
+    )
 }
 
 /// The quantity of a BRDF of this name.
