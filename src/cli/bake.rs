@@ -13,7 +13,7 @@ use crate::cli::{HEADING, print, print_json, tell, warn};
 use crate::io::target::IDENTITY;
 use crate::io::{Format, format};
 use crate::scene;
-use crate::scene::planner::{Plan, Selection};
+use crate::scene::planner::{Plan, Selection, UNUSED};
 use crate::table::quantity;
 use serde_json::json;
 use std::mem::ManuallyDrop;
@@ -174,7 +174,13 @@ fn summary(say: &Say, plan: &Plan, baked: &Baked) -> Result<()> {
     ];
     say.line(&format!("{HEADING}ms{HEADING:#}  {}", stages.join(", ")))?;
     if !plan.left_out.is_empty() {
-        say.line(&format!("{} things left out: see the manifest, or --dry-run", plan.left_out.len()))?;
+        let unused = plan.left_out.iter().filter(|left| left.why == UNUSED).count();
+        let others = plan.left_out.len() - unused;
+        let words = [(others, "left out"), (unused, "models not used")];
+        let words =
+            words.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}"));
+        let words: Vec<_> = words.collect();
+        say.line(&format!("{}: see the manifest, or --dry-run", words.join(", ")))?;
     }
     Ok(())
 }

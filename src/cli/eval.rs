@@ -11,7 +11,7 @@ use crate::plan::TablePlan;
 use crate::scene;
 use crate::table::axis::{Axis, Variable};
 use crate::table::quantity::BRDF;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -96,15 +96,8 @@ pub fn run(args: &Args) -> Result<()> {
     }
 }
 
-/// What to evaluate, as a table of one texel: a material, or a model with parameters, in a recipe's own
-/// words.
+/// Plans a table of one texel: a material, or a model with parameters, at one pair of directions.
 fn subject(args: &Args, angles: &Angles) -> Result<TablePlan> {
-    let axes = vec![
-        Axis::listed(Variable::ThetaI, vec![angles.theta_i])?,
-        Axis::listed(Variable::ThetaE, vec![angles.theta_e])?,
-        // The models do not tell left from right.
-        Axis::listed(Variable::DeltaPhi, vec![angles.delta_phi().abs()])?,
-    ];
     let sets = args.set.iter().map(|set| subject::key_value(set)).collect::<Result<Vec<_>>>()?;
     let (scene, name) = match (&args.scene, &args.material, &args.model) {
         (Some(path), Some(name), _) => (subject::material(scene::read(path)?, name, sets)?, name.clone()),
@@ -115,7 +108,24 @@ fn subject(args: &Args, angles: &Angles) -> Result<TablePlan> {
         }
         _ => return Err(Error::input("give --model NAME, or a SCENE and --material NAME")),
     };
+    let axes = axes(scene.material(&name)?.is_anisotropic(), angles)?;
     TablePlan::material("eval", &BRDF, &scene, &name, axes)
+}
+
+/// Builds axes of one sample each: (θi, θe, δφ), or (θi, φi, θe, φe) if azimuths matter.
+fn axes(anisotropic: bool, angles: &Angles) -> Result<Vec<Axis>> {
+    let sample = |&variable: &Variable| {
+        let value = match variable {
+            Variable::ThetaI => angles.theta_i,
+            Variable::PhiI => angles.phi_i.rem_euclid(TAU),
+            Variable::ThetaE => angles.theta_e,
+            Variable::PhiE => angles.phi_e.rem_euclid(TAU),
+            // Isotropic models are symmetric about the plane of incidence.
+            _ => angles.delta_phi().abs(),
+        };
+        Axis::listed(variable, vec![value])
+    };
+    BRDF.variables(anisotropic).iter().map(sample).collect()
 }
 
 /// Tells whether a value is finite and not negative, as every BRDF's must be.

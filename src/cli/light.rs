@@ -16,7 +16,7 @@ use crate::io::target::IDENTITY;
 use crate::io::{Format, Provenance, TableEntry, TableSet, format, sha256};
 use crate::light;
 use crate::light::bake::Order;
-use crate::light::{Clamped, Light};
+use crate::light::{Clamped, InvalidTexels, Light};
 use crate::scene;
 use crate::scene::{Material, Scene};
 use crate::table::Table;
@@ -131,7 +131,7 @@ fn grid(text: &str) -> Result<[usize; 2], String> {
 }
 
 /// What is lit.
-struct Subject {
+struct LitMaterial {
     scene: Scene,
     material: Material,
 }
@@ -155,9 +155,9 @@ pub fn run(args: &Args) -> Result<()> {
     say(&format!("{HEADING}light{HEADING:#}   {}: {}", source.name, light.summary()))?;
     let mut set = TableSet::create(&args.out)?;
     let watch = Watch::new(5);
-    let made = make(args, &light, &source, lit.as_ref(), &evaluator, &watch, &mut set);
+    let computed = compute(args, &light, &source, lit.as_ref(), &evaluator, &watch, &mut set);
     watch.finish();
-    let (tables, manifest) = made?;
+    let (tables, manifest) = computed?;
     set.commit(&manifest)?;
     for table in &tables {
         let number = |x: Option<f64>| x.map_or("–".into(), |x| format!("{x:.1e}"));
@@ -178,26 +178,28 @@ pub fn run(args: &Args) -> Result<()> {
             "  three bands miss the irradiance by {off:.4} of ∫ L dω at most; 0.0938 is the bound"
         ))?;
     }
-    say(&format!("{} tables in {}", tables.len(), args.out.display()))?;
+    let noun = if tables.len() == 1 { "table" } else { "tables" };
+    say(&format!("{} {noun} in {}", tables.len(), args.out.display()))?;
     if args.json { print_json(&manifest) } else { Ok(()) }
 }
 
 /// The name of a light, its description for the manifest, and the hash of its file.
-struct Source {
+struct LightSource {
     name: String,
     json: Value,
     sha256: Option<String>,
 }
 
-fn light_of(args: &Args) -> Result<(Light, Source)> {
+fn light_of(args: &Args) -> Result<(Light, LightSource)> {
     let Some(path) = &args.env else {
         let light = args.sky.clone().ok_or_else(|| Error::input("give --env FILE or --sky LIGHT"))?;
-        light.check().map_err(|error| error.at("--sky"))?;
         let name = light.summary();
         let json = json!({ "kind": name });
-        return Ok((light, Source { name, json, sha256: None }));
+        return Ok((light, LightSource { name, json, sha256: None }));
     };
-    let (map, clamped) = light::read(path, args.clamp)?;
+    let invalid =
+        if args.clamp { InvalidTexels::Clamp } else { InvalidTexels::Refuse { remedy: "give --clamp" } };
+    let (map, clamped) = light::read(path, invalid)?;
     if map.width() != 2 * map.height() {
         warn(&format!(
             "{}: {} × {} texels; a map of latitude and longitude is twice as wide as high",
@@ -216,11 +218,11 @@ fn light_of(args: &Args) -> Result<(Light, Source)> {
         "height": map.height(), "rotation": map.rotation(), "clamped": clamped,
     });
     let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    Ok((Light::Map(map), Source { name, json, sha256: Some(hash) }))
+    Ok((Light::Map(map), LightSource { name, json, sha256: Some(hash) }))
 }
 
 /// Reads the scene or model, and finds the material to light.
-fn lit(args: &Args) -> Result<Option<Subject>> {
+fn lit(args: &Args) -> Result<Option<LitMaterial>> {
     let Some(name) = &args.subject else { return Ok(None) };
     let sets = args.set.iter().map(|set| key_value(set)).collect::<Result<Vec<_>>>()?;
     let path = Path::new(name);
@@ -236,7 +238,7 @@ fn lit(args: &Args) -> Result<Option<Subject>> {
         }
         let scene = subject::model(name, sets.iter().copied())?;
         let material = scene.materials[0].clone();
-        return Ok(Some(Subject { scene, material }));
+        return Ok(Some(LitMaterial { scene, material }));
     }
     let scene = scene::read(path)?;
     let material = match (&args.material, &scene.materials[..]) {
@@ -258,7 +260,7 @@ fn lit(args: &Args) -> Result<Option<Subject>> {
     }
     let scene = subject::material(scene, &material, sets)?;
     let material = scene.material(&material)?.clone();
-    Ok(Some(Subject { scene, material }))
+    Ok(Some(LitMaterial { scene, material }))
 }
 
 /// Builds the axes of the normals: a grid over the sphere, or the one normal of `--normal`.
@@ -272,11 +274,11 @@ fn normals(args: &Args, grid: Option<[usize; 2]>) -> Result<[Axis; 2]> {
 }
 
 #[allow(clippy::too_many_arguments)]
-fn make(
+fn compute(
     args: &Args,
     light: &Light,
-    source: &Source,
-    lit: Option<&Subject>,
+    source: &LightSource,
+    lit: Option<&LitMaterial>,
     evaluator: &Evaluator,
     observer: &dyn Observer,
     set: &mut TableSet,
@@ -292,7 +294,7 @@ fn make(
     let spread = args.normals.or(args.normal.is_none().then_some(NORMALS));
     let mut truncation = Value::Null;
     let tables = match (args.quantity, lit) {
-        (Wanted::Radiance, Some(Subject { material, .. })) => {
+        (Wanted::Radiance, Some(LitMaterial { material, .. })) => {
             let [theta_n, phi_n] = normals(args, args.normals)?;
             let [rows, columns] = args.exits;
             let theta_e = match rows {
@@ -308,7 +310,7 @@ fn make(
             let off = difference(&exact, &split);
             vec![exact, split, off]
         }
-        (Wanted::Radiosity, Some(Subject { scene, material })) => {
+        (Wanted::Radiosity, Some(LitMaterial { scene, material })) => {
             order.radiosity(scene, &material.name, normals(args, spread)?, &mut stages)?.to_vec()
         }
         (Wanted::Sh, _) => {

@@ -99,7 +99,7 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Maps an error to the exit code that docs/README.md lists for its kind.
+/// Maps an error to the exit code that docs/drivers.md lists for its kind.
 fn exit_code(error: &Error) -> u8 {
     match error {
         Error::Promise(_) => 1,

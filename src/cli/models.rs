@@ -80,7 +80,9 @@ fn model_or_term(name: &str) -> Result<&'static Model> {
 }
 
 fn list() -> Result<()> {
-    let line = |name: &str, summary: &str| print(&format!("  {name:26}{summary}"));
+    let terms = MASKINGS.iter().chain(&FRESNELS).map(|term| term.name);
+    let width = column(MODELS.iter().map(|model| model.name).chain(terms));
+    let line = |name: &str, summary: &str| print(&format!("  {name:width$}{summary}"));
     print(&format!("{HEADING}models{HEADING:#}"))?;
     MODELS.iter().try_for_each(|model| line(model.name, model.summary))?;
     for (kind, terms) in [("masking", &MASKINGS[..]), ("fresnel", &FRESNELS[..])] {
@@ -105,10 +107,15 @@ fn one(model: &Model, as_json: bool) -> Result<()> {
     print(&format!("{HEADING}{}{HEADING:#}  {}", model.name, model.summary))?;
     print(&format!("{HEADING}source{HEADING:#}  {}", model.source))?;
     print(&format!("{HEADING}parameters{HEADING:#}"))?;
+    let width = column(parameters.iter().map(|parameter| parameter.name));
     for Parameter { name, range, unit, default, what } in &parameters {
         let default = default.as_ref().map_or("no default".into(), |default| format!("default {default}"));
-        print(&format!("  {name:10}{what}"))?;
-        print(&format!("  {:10}{range}{}{unit}; {default}", "", if unit.is_empty() { "" } else { ", " }))?;
+        print(&format!("  {name:width$}{what}"))?;
+        print(&format!(
+            "  {:width$}{range}{}{unit}; {default}",
+            "",
+            if unit.is_empty() { "" } else { ", " }
+        ))?;
     }
     print(&format!("{HEADING}parts{HEADING:#}"))?;
     for part in model.parts {
@@ -117,11 +124,17 @@ fn one(model: &Model, as_json: bool) -> Result<()> {
     if !model.metals().is_empty() {
         print(&format!("{HEADING}metals{HEADING:#}"))?;
     }
+    let width = column(model.metals().iter().map(|metal| metal.name));
     for Metal { name, eta, k, source } in model.metals() {
-        print(&format!("  {name:10}eta = {eta:?}, k = {k:?}; {source}"))?;
+        print(&format!("  {name:width$}eta = {eta:?}, k = {k:?}; {source}"))?;
     }
     print(&format!("{HEADING}promises{HEADING:#}"))?;
     promises.iter().try_for_each(|promise| print(&format!("  {promise}")))
+}
+
+/// Returns the width of a column of names, with two blanks after the longest.
+fn column<'a>(names: impl Iterator<Item = &'a str>) -> usize {
+    names.map(str::len).max().unwrap_or(0) + 2
 }
 
 const DIMENSIONLESS: &str = "dimensionless";
