@@ -280,7 +280,7 @@ impl Finished<'_> {
     }
 }
 
-/// A material whose format lets it reflect more than it receives says so.
+/// Warns of materials that reflect more light than they receive.
 fn energy_warnings(plan: &Plan, tables: &[Table]) -> Vec<String> {
     let gains =
         |table: &&Table| table.quantity == &RHO_DH && plan.materials.iter().any(|m| m.name == table.subject);
@@ -290,11 +290,12 @@ fn energy_warnings(plan: &Plan, tables: &[Table]) -> Vec<String> {
         .filter(gains)
         .filter(|table| largest(table) > 1.0 + plan.tolerance)
         .map(|table| {
+            let is_gltf = plan.materials.iter().any(|m| m.name == table.subject && m.metallic.is_some());
             format!(
-                "{}: reflects up to {:.4} of what it receives; its lobes are added without conserving energy, as \
-                 glTF 2.0 has it",
+                "{}: reflects up to {:.4} of what it receives; its lobes are added without conserving energy{}",
                 table.subject,
-                largest(table)
+                largest(table),
+                if is_gltf { ", as glTF 2.0 defines them" } else { "" }
             )
         })
         .collect()

@@ -17,21 +17,21 @@ pub struct Args {
     /// Models to measure [default: all that have values]
     #[arg(long, value_name = "NAME", num_args = 1.., conflicts_with = "study")]
     model: Vec<String>,
-    /// In place of models: the published forms of the GGX term, and what an engine loses by each
+    /// Measure the published forms of the GGX term instead of models
     #[arg(long)]
     study: bool,
-    /// The folder for atlas.csv, atlas.json and atlas_MODEL.png, or study.csv, .json and .png; made if it is
-    /// not there. Without it nothing is written
+    /// The folder for atlas.csv, atlas.json and atlas_MODEL.png, or study.csv, .json and .png, created if
+    /// missing. Without it no file is written
     #[arg(long, short, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// auto: the best GPU, else software Vulkan, else the CPU path; cpu; or a part of an adapter's name
+    /// `auto` (best GPU, else software Vulkan, else CPU), `cpu`, or part of an adapter's name
     #[arg(long, value_name = "NAME", default_value = "auto")]
     device: DeviceChoice,
-    /// Values to compare of each model or form. A count, so that no result depends on the clock
+    /// Number of values to compare for each model or form. Results do not depend on the speed of the machine
     #[arg(long, value_name = "N", default_value_t = DEFAULT_BUDGET,
           value_parser = clap::value_parser!(u64).range(1..=10_000_000_000))]
     budget: u64,
-    /// Print the JSON file on stdout, and everything for people on stderr
+    /// Print the JSON file on stdout and messages on stderr
     #[arg(long)]
     json: bool,
 }
@@ -42,11 +42,11 @@ Examples:
   gonio atlas --model ggx --budget 100000000
   gonio atlas --study --out atlas
 
-Inputs: every extreme of θi, θe and δφ with every other, and low-discrepancy pairs that crowd at the horizon,
-the mirror direction and the normal; α from 1e-6 to 1. The worst input of each decade of α is printed as
-options of gonio eval, with every digit.
+Inputs: all combinations of the extremes of θi, θe and δφ, and low-discrepancy pairs, denser near the horizon,
+the mirror direction and the normal; α from 1e-6 to 1. The worst input of each subject is printed as options of
+gonio eval, with all digits.
 
-Exit codes: 0 every promise is kept, 1 one is not, 2 bad input, 3 no device, 130 interrupted";
+Exit codes: 0 all errors are as promised, 1 an error is larger, 2 bad input, 3 no device, 130 interrupted";
 
 pub fn run(args: &Args) -> Result<()> {
     let models = models(args)?;
@@ -85,7 +85,7 @@ pub fn run(args: &Args) -> Result<()> {
     }
 }
 
-/// The models that are asked for, or all that have values.
+/// Returns the models of `--model`, or all models that have values.
 fn models(args: &Args) -> Result<Vec<&'static Model>> {
     if args.model.is_empty() {
         return Ok(MODELS
@@ -96,7 +96,7 @@ fn models(args: &Args) -> Result<Vec<&'static Model>> {
     args.model.iter().map(|name| model::find(name).map_err(|error| error.at("--model"))).collect()
 }
 
-/// A table of a page.
+/// Formats a page as a table of decades of α.
 fn lines(page: &Page) -> Vec<String> {
     let mut lines = vec![
         format!("{HEADING}{}{HEADING:#}  {}", page.subject, page.source),

@@ -13,7 +13,7 @@ use crate::cli::{HEADING, print, print_json, tell, warn};
 use crate::io::target::IDENTITY;
 use crate::io::{Format, format};
 use crate::scene;
-use crate::scene::planner::{Plan, Selection};
+use crate::scene::planner::{Plan, Selection, UNUSED};
 use crate::table::quantity;
 use serde_json::json;
 use std::mem::ManuallyDrop;
@@ -24,14 +24,14 @@ use std::path::PathBuf;
 pub struct Args {
     /// A scene (.gltf, .glb) or a recipe (.toml)
     scene: PathBuf,
-    /// The folder for the tables and manifest.json; made if it is not there
+    /// The folder for the tables and manifest.json, created if missing
     #[arg(long, short, value_name = "DIR", required_unless_present = "dry_run")]
     out: Option<PathBuf>,
-    /// The error that no table may exceed: absolute for integrals, relative for values [default: the
-    /// recipe's, else 1e-4]
+    /// The largest error of a table: absolute for integrals, relative for values [default: the recipe's,
+    /// else 1e-4]
     #[arg(long, value_name = "T", value_parser = tolerance, allow_negative_numbers = true)]
     tolerance: Option<f64>,
-    /// auto: the best GPU, else software Vulkan, else the CPU path; cpu; or a part of an adapter's name
+    /// `auto` (best GPU, else software Vulkan, else CPU), `cpu`, or part of an adapter's name
     #[arg(long, value_name = "NAME", default_value = "auto")]
     device: DeviceChoice,
     /// Files to write for each table, separated by commas
@@ -40,7 +40,7 @@ pub struct Args {
     /// Texels of each table to compare with the f64 reference: a count, or all
     #[arg(long, value_name = "N", default_value = "256")]
     check: Check,
-    /// Only this material and the bases that it uses
+    /// Bake only this material and the bases that it uses
     #[arg(long, value_name = "NAME")]
     material: Option<String>,
     #[arg(long, value_name = "Q", help = only_this_quantity())]
@@ -48,14 +48,14 @@ pub struct Args {
     /// Print the plan and compute nothing
     #[arg(long)]
     dry_run: bool,
-    /// Print the manifest on stdout, and everything for people on stderr
+    /// Print the manifest on stdout and messages on stderr
     #[arg(long)]
     json: bool,
 }
 
 /// The help of `--quantity`.
 fn only_this_quantity() -> String {
-    format!("Only this quantity: {}", alternatives(quantity::of_a_brdf().map(|quantity| quantity.name)))
+    format!("Bake only this quantity: {}", alternatives(quantity::of_a_brdf().map(|quantity| quantity.name)))
 }
 
 const AFTER_HELP: &str = "\
@@ -79,10 +79,11 @@ A recipe asks for tables without a scene:
   axes = { mu = 64, roughness = 64 }
 
 An axis is a count, or { values = [] }, or { count, range = [a, b], positions, mapping } with
-positions \"centers\" or \"nodes\" and mapping \"linear\" or \"sqrt\". The README has the rest.
+positions \"centers\" or \"nodes\" and mapping \"linear\" or \"sqrt\". See docs/recipes.md
+for all keys.
 
 Exit codes: 0 success, 1 a table misses its tolerance, 2 bad input, 3 no device, 130 interrupted.
-Whatever was in DIR stays as it was unless all of it succeeds.";
+If anything fails, DIR keeps its old contents.";
 
 pub(super) fn tolerance(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| format!("\"{text}\" is not a number"))?;
@@ -137,7 +138,7 @@ pub fn run(args: &Args) -> Result<()> {
     if args.json { print_json(&baked.manifest) } else { Ok(()) }
 }
 
-/// One line a table: size, rule, error, time.
+/// Prints one line for each table: size, error and time.
 fn summary(say: &Say, plan: &Plan, baked: &Baked) -> Result<()> {
     let width = baked.tables.iter().map(|t| t.name.chars().count()).max().unwrap_or(0);
     say.line(&format!(
@@ -173,12 +174,18 @@ fn summary(say: &Say, plan: &Plan, baked: &Baked) -> Result<()> {
     ];
     say.line(&format!("{HEADING}ms{HEADING:#}  {}", stages.join(", ")))?;
     if !plan.left_out.is_empty() {
-        say.line(&format!("{} things left out: see the manifest, or --dry-run", plan.left_out.len()))?;
+        let unused = plan.left_out.iter().filter(|left| left.why == UNUSED).count();
+        let others = plan.left_out.len() - unused;
+        let words = [(others, "left out"), (unused, "models not used")];
+        let words =
+            words.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}"));
+        let words: Vec<_> = words.collect();
+        say.line(&format!("{}: see the manifest, or --dry-run", words.join(", ")))?;
     }
     Ok(())
 }
 
-/// The plan for a machine.
+/// Describes the plan as JSON, for `--dry-run --json`.
 fn plan_json(plan: &Plan) -> serde_json::Value {
     let tables: Vec<_> = plan
         .tables

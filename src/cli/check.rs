@@ -22,46 +22,46 @@ pub(super) use targets::quoted;
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub struct Args {
-    /// A scene or recipe: every material and every basis in it
+    /// A scene or recipe, of which every material and basis is checked
     #[arg(value_name = "SCENE", conflicts_with_all = ["model", "wgsl", "set"])]
     scene: Option<PathBuf>,
-    /// Of the scene, only this material
+    /// Check only this material of the scene
     #[arg(long, value_name = "NAME", requires = "scene")]
     material: Option<String>,
     /// A model, by its name in `gonio models`
     #[arg(long, value_name = "NAME", conflicts_with = "wgsl")]
     model: Option<String>,
-    /// A WGSL file with a BRDF of your own
+    /// Your own WGSL file with a BRDF
     #[arg(long, value_name = "FILE", requires = "entry")]
     wgsl: Option<PathBuf>,
-    /// Its function: (wi: vec3f, wo: vec3f, further f32 parameters) -> f32 or vec3f, in sr⁻¹. Both directions
+    /// The function in that file: (wi: vec3f, wo: vec3f, further f32 parameters) -> f32 or vec3f, in sr⁻¹. Both directions
     /// are unit vectors that point away from the surface, whose normal is +z
     #[arg(long, value_name = "NAME", requires = "wgsl")]
     entry: Option<String>,
-    /// A parameter of the function, which needs a value or a range to check for each; or of the model, where
-    /// what is not set is checked over its whole range
+    /// Set a parameter to a value, or to a range to check. A WGSL function needs every parameter; a model's
+    /// unset parameters are checked over their whole range
     #[arg(long, value_name = "NAME=VALUE|LOW..HIGH")]
     set: Vec<String>,
-    /// The function returns f cos θi: the cosine is divided out, θi = 90° taken at cos θi = 2⁻²⁴
+    /// The function returns f cos θi: gonio divides by cos θi, at least 2⁻²⁴
     #[arg(long, requires = "wgsl")]
     cosine: bool,
     /// Do not expect isotropy or bilateral symmetry
     #[arg(long, requires = "wgsl")]
     anisotropic: bool,
-    /// Values to look at before the search, of each subject: 20000000 or 1e8. A count, so that no result
-    /// depends on the clock
+    /// Number of inputs to evaluate for each subject before the search, e.g. 1e8. Results do not depend on the
+    /// speed of the machine
     #[arg(long, value_name = "N", default_value = "2e7", value_parser = budget)]
     budget: u64,
-    /// auto, or a part of an adapter's name; for scenes and models also cpu
+    /// `auto` or part of an adapter's name; for scenes and models also `cpu`
     #[arg(long, value_name = "NAME", default_value = "auto")]
     device: DeviceChoice,
-    /// Print JSON on stdout, and everything for people on stderr
+    /// Print JSON on stdout and messages on stderr
     #[arg(long)]
     json: bool,
-    /// Write JUnit XML for CI: a test suite a subject
+    /// Write JUnit XML for CI, one test suite for each subject
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
-    /// A folder for pictures, made if it is not there: ρ_dh against θi, and the error against the reference
+    /// A folder for pictures of ρ_dh over θi and of the error against the reference, created if missing
     #[arg(long, short, value_name = "DIR", conflicts_with = "wgsl")]
     out: Option<PathBuf>,
 }
@@ -76,18 +76,19 @@ Examples:
   gonio check --wgsl brdf.wgsl --entry shade --cosine --anisotropic --json
 
 Promises: finite, non-negative, reciprocity, isotropy, bilateral symmetry, agreement
-with the f64 reference (scenes and models), and energy (ρ_dh ≤ 1). The worst input of each is printed as a
-command to paste, with every digit; of a file of your own as options of gonio eval and the two vectors.
-What a format is known to break is declared: reported, and held to its bound.
+with the f64 reference (scenes and models), and energy (ρ_dh ≤ 1). The worst input of each is printed with all
+digits, as a command to paste; for your own WGSL file: its options and the two vectors.
+If a format is known to break a promise, gonio reports it and checks the known bound.
 
-Exit codes: 0 every promise is kept, or broken as declared, 1 one is not, 2 bad input, 3 no device, 130 interrupted";
+Exit codes: 0 all promises hold (or break within their known bound), 1 a promise is broken, 2 bad input,
+3 no device, 130 interrupted";
 
 /// Bold green, and bold red.
 const KEPT: Style = AnsiColor::Green.on_default().bold();
 const BROKEN: Style = AnsiColor::Red.on_default().bold();
 const DECLARED: Style = AnsiColor::Yellow.on_default().bold();
 
-/// A count, also as 1e8.
+/// Parses a count, also as 1e8.
 fn budget(text: &str) -> Result<u64, String> {
     let value: f64 = text.parse().map_err(|_| format!("\"{text}\" is not a number"))?;
     if (1.0..=1e12).contains(&value) { Ok(value as u64) } else { Err("give a count from 1 to 1e12".into()) }
@@ -104,19 +105,19 @@ pub fn run(args: &Args) -> Result<()> {
             let (evaluator, line) = Evaluator::choose(&args.device)?;
             scene.warnings.iter().for_each(|warning| warn(warning));
             let targets = targets::scene(path, &scene, args.material.as_deref(), &evaluator)?;
-            own(args, targets, &evaluator, &line)
+            check_targets(args, targets, &evaluator, &line)
         }
         (_, Some(model), ..) => {
             let (evaluator, line) = Evaluator::choose(&args.device)?;
-            own(args, vec![targets::model(args, model, &evaluator)?], &evaluator, &line)
+            check_targets(args, vec![targets::model(args, model, &evaluator)?], &evaluator, &line)
         }
-        (_, _, Some(path), Some(entry)) => shader(args, path, entry),
+        (_, _, Some(path), Some(entry)) => check_shader(args, path, entry),
         _ => Err(Error::input("give a SCENE, --model NAME, or --wgsl FILE and --entry NAME")),
     }
 }
 
-/// Our own models, one subject after the other.
-fn own(args: &Args, targets: Vec<Target>, evaluator: &Evaluator, line: &str) -> Result<()> {
+/// Checks models, bases and materials, one subject after the other.
+fn check_targets(args: &Args, targets: Vec<Target>, evaluator: &Evaluator, line: &str) -> Result<()> {
     print_beside(args.json, &format!("{HEADING}device{HEADING:#}  {line}"))?;
     let watch = Watch::new(STEPS * targets.len());
     let mut all = Vec::new();
@@ -167,8 +168,8 @@ fn own(args: &Args, targets: Vec<Target>, evaluator: &Evaluator, line: &str) -> 
     verdict(&all)
 }
 
-/// A user's own function.
-fn shader(args: &Args, path: &Path, entry: &str) -> Result<()> {
+/// Checks a function in a user's WGSL file.
+fn check_shader(args: &Args, path: &Path, entry: &str) -> Result<()> {
     let file = path.display().to_string();
     let source = std::fs::read(path).map_err(Error::io("read", path))?;
     let source = String::from_utf8(source).map_err(|e| {
@@ -231,7 +232,7 @@ fn shader(args: &Args, path: &Path, entry: &str) -> Result<()> {
     verdict(&checked)
 }
 
-/// A subject's report, how long it took, and the worst input of each finding to be pasted.
+/// A subject's report, its duration, and the worst input of each finding as options to paste.
 pub(super) struct Checked {
     pub report: Report,
     pub seconds: f64,
@@ -264,7 +265,7 @@ fn show_report(args: &Args, report: &Report, seconds: f64, inputs: &Vec<Option<S
     Ok(())
 }
 
-/// A value or a range for each parameter of the function.
+/// Parses `--set` into one value or range for each parameter of the function.
 fn parameters(function: &UserFunction, sets: &[String]) -> Result<Vec<Parameter>> {
     let mut given = Vec::new();
     for set in sets {
@@ -299,7 +300,7 @@ fn parameters(function: &UserFunction, sets: &[String]) -> Result<Vec<Parameter>
     function.parameters().iter().map(find).collect()
 }
 
-/// The line of a promise.
+/// Formats one finding as a line.
 fn show(finding: &Finding) -> String {
     let (style, word) = match finding.verdict {
         Verdict::Kept => (KEPT, "kept    "),
@@ -310,7 +311,7 @@ fn show(finding: &Finding) -> String {
     format!("{:13}  {style}{word}{style:#}  {}{note}", finding.property, finding.said)
 }
 
-/// An error where a promise is broken.
+/// Returns an error that names the broken promises, if there are any.
 fn verdict(all: &[Checked]) -> Result<()> {
     let broken = |report: &Report| -> Vec<_> {
         report.findings.iter().filter(|f| f.verdict == Verdict::Broken).map(|f| f.property).collect()

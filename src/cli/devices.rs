@@ -15,8 +15,8 @@ pub struct Args {
 }
 
 const AFTER_HELP: &str = "\
-Each device is opened and runs one small shader, which finds what its driver does to others: stop loops, round
-a·b + c once, rewrite sums, drop denormals. What follows for tables is said beside it.
+Each device runs one small shader. It tests whether the driver stops long loops, rounds a·b + c once,
+reorders sums or drops denormals. The list states the consequences for tables.
 
 Examples:
   gonio devices
@@ -26,7 +26,7 @@ Exit codes: 0 success, 2 the list cannot be written";
 
 pub fn run(args: &Args) -> Result<()> {
     let adapters = gpu::adapters();
-    // What opens is what `auto` takes the first of.
+    // `auto` chooses the first that opens.
     let opened = adapters.iter().map(Adapter::open);
     let canaries: Vec<_> = opened.map(|device| device.map(|device| device.canary())).collect();
     if args.json {
@@ -69,7 +69,7 @@ fn entry(adapter: &Adapter, canary: &Result<Result<Canary>>) -> Value {
     entry
 }
 
-/// What it does to loops, and what follows.
+/// Describes how the driver treats long loops.
 fn loops(canary: &Canary) -> String {
     match canary.loop_turns {
         Some(turns) => {
@@ -79,7 +79,7 @@ fn loops(canary: &Canary) -> String {
     }
 }
 
-/// What it does to numbers, and what follows.
+/// Describes how the driver rounds, and the consequences for tables.
 fn arithmetic(canary: &Canary) -> Vec<&'static str> {
     let Canary { contracts, fused_fma, reassociates, flushes_denormals, tells_nan, .. } = *canary;
     let products = match (contracts, fused_fma) {

@@ -11,7 +11,7 @@ use crate::plan::TablePlan;
 use crate::scene;
 use crate::table::axis::{Axis, Variable};
 use crate::table::quantity::BRDF;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -26,7 +26,7 @@ pub struct Args {
     /// A model; gonio models lists them
     #[arg(long, value_name = "NAME", required_unless_present = "scene")]
     model: Option<String>,
-    /// A parameter of the model, by its name in recipes, or of what varies in the material; repeat for more
+    /// Set a parameter of the model, or a varying parameter of the material; may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Zenith angle of incidence: radians, or degrees as 45deg
@@ -40,18 +40,18 @@ pub struct Args {
     #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true,
           required_unless_present = "pairs")]
     theta_e: Option<f64>,
-    /// Azimuth of exitance [default: opposite to that of incidence, where a mirror reflects]
+    /// Azimuth of exitance [default: phi_i + 180°, as a mirror reflects]
     #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true)]
     phi_e: Option<f64>,
-    /// In place of one pair, a list: NPY (n, 4) in float64 or float32, or CSV; columns theta_i, phi_i,
-    /// theta_e, phi_e in radians
+    /// A file with a list of pairs: NPY (n, 4) in float64 or float32, or CSV; columns theta_i, phi_i, theta_e,
+    /// phi_e in radians
     #[arg(long, value_name = "FILE", requires = "out",
           conflicts_with_all = ["theta_i", "phi_i", "theta_e", "phi_e"])]
     pairs: Option<PathBuf>,
-    /// The file for the list's values: NPY (n, channels) in float32, or CSV, by its extension
+    /// The file for the values of the list: NPY (n, channels) in float32, or CSV, by its extension
     #[arg(long, short, value_name = "FILE", requires = "pairs")]
     out: Option<PathBuf>,
-    /// auto, cpu, or a part of an adapter's name
+    /// `auto` (best GPU, else software Vulkan, else CPU), `cpu`, or part of an adapter's name
     #[arg(long, value_name = "NAME", default_value = "auto")]
     device: DeviceChoice,
     /// Print JSON on stdout
@@ -67,7 +67,7 @@ Examples:
   gonio eval recipe.toml --material gold --theta-i 30deg --theta-e 60deg
   gonio eval recipe.toml --material gold --pairs pairs.npy --out values.npy
 
-A list in CSV; its first line and those that begin with # may be left out:
+A list in CSV; the header line and lines that begin with # are optional:
   theta_i,phi_i,theta_e,phi_e
   # the mirror direction, and a millionth of a radian from it
   0.7,0,0.7,3.141592653589793
@@ -96,15 +96,8 @@ pub fn run(args: &Args) -> Result<()> {
     }
 }
 
-/// What to evaluate, as a table of one texel: a material, or a model with parameters, in a recipe's own
-/// words.
+/// Plans a table of one texel: a material, or a model with parameters, at one pair of directions.
 fn subject(args: &Args, angles: &Angles) -> Result<TablePlan> {
-    let axes = vec![
-        Axis::listed(Variable::ThetaI, vec![angles.theta_i])?,
-        Axis::listed(Variable::ThetaE, vec![angles.theta_e])?,
-        // The models do not tell left from right.
-        Axis::listed(Variable::DeltaPhi, vec![angles.delta_phi().abs()])?,
-    ];
     let sets = args.set.iter().map(|set| subject::key_value(set)).collect::<Result<Vec<_>>>()?;
     let (scene, name) = match (&args.scene, &args.material, &args.model) {
         (Some(path), Some(name), _) => (subject::material(scene::read(path)?, name, sets)?, name.clone()),
@@ -115,10 +108,27 @@ fn subject(args: &Args, angles: &Angles) -> Result<TablePlan> {
         }
         _ => return Err(Error::input("give --model NAME, or a SCENE and --material NAME")),
     };
+    let axes = axes(scene.material(&name)?.is_anisotropic(), angles)?;
     TablePlan::material("eval", &BRDF, &scene, &name, axes)
 }
 
-/// Whether a value keeps what every BRDF promises.
+/// Builds axes of one sample each: (θi, θe, δφ), or (θi, φi, θe, φe) if azimuths matter.
+fn axes(anisotropic: bool, angles: &Angles) -> Result<Vec<Axis>> {
+    let sample = |&variable: &Variable| {
+        let value = match variable {
+            Variable::ThetaI => angles.theta_i,
+            Variable::PhiI => angles.phi_i.rem_euclid(TAU),
+            Variable::ThetaE => angles.theta_e,
+            Variable::PhiE => angles.phi_e.rem_euclid(TAU),
+            // Isotropic models are symmetric about the plane of incidence.
+            _ => angles.delta_phi().abs(),
+        };
+        Axis::listed(variable, vec![value])
+    };
+    BRDF.variables(anisotropic).iter().map(sample).collect()
+}
+
+/// Tells whether a value is finite and not negative, as every BRDF's must be.
 fn is_sane(value: f32) -> bool {
     value.is_finite() && value >= 0.0
 }

@@ -18,13 +18,13 @@ use std::path::PathBuf;
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub struct Args {
-    /// The folder for index.html, gallery.md, the pictures and manifest.json; made if it is not there
+    /// The folder for index.html, gallery.md, the pictures and manifest.json, created if missing
     #[arg(long, short, value_name = "DIR")]
     out: PathBuf,
-    /// auto: the best GPU, else software Vulkan, else the CPU path; cpu; or a part of an adapter's name
+    /// `auto` (best GPU, else software Vulkan, else CPU), `cpu`, or part of an adapter's name
     #[arg(long, value_name = "NAME", default_value = "auto")]
     device: DeviceChoice,
-    /// Print the manifest on stdout, and everything for people on stderr
+    /// Print the manifest on stdout and messages on stderr
     #[arg(long)]
     json: bool,
 }
@@ -33,18 +33,18 @@ const AFTER_HELP: &str = "\
 Examples:
   gonio gallery --out gallery
 
-A picture of each model at three settings, as gonio plot makes it, and one that compares the masking and the
-Fresnel terms. index.html has it all in one file. Unless all of it succeeds, what was in DIR stays as it was.
+The page shows each model at three settings, as gonio plot draws it, and compares the masking and Fresnel terms.
+index.html contains all pictures. If anything fails, DIR keeps its old contents.
 
 Exit codes: 0 success, 1 ρ_dh misses its tolerance, 2 bad input, 3 no device, 130 interrupted";
 
 /// Light comes in at 45°.
 const THETAS: [f64; 1] = [FRAC_PI_4];
 
-/// The same to be read by a browser and by people.
+/// The page in HTML, and the same in Markdown.
 const PAGES: [&str; 2] = ["index.html", "gallery.md"];
 
-/// A picture and what is said beside it.
+/// A picture with its title, summary and facts.
 struct Entry {
     stem: String,
     title: String,
@@ -80,7 +80,7 @@ pub fn run(args: &Args) -> Result<()> {
     if args.json { print_json(&manifest) } else { Ok(()) }
 }
 
-/// Every model, and its terms beside each other.
+/// Lists an entry for every model, for the masking and Fresnel terms, the thin film and the compensations.
 fn entries() -> Result<Vec<Entry>> {
     let mut entries = Vec::new();
     for model in MODELS {
@@ -138,7 +138,7 @@ fn parameters(model: &Model) -> Vec<String> {
     details::parameters(model).into_iter().map(line).collect()
 }
 
-/// What is lost between rough mirrors, and given back.
+/// Compares the methods that restore the light lost between microfacets.
 fn compensation(model: &Model) -> Result<Entry> {
     let names = Compensation::ALL.map(Compensation::name);
     let sets = ["roughness=0.8".into(), "fresnel=none".into(), format!("compensation={}", names.join(","))];
@@ -189,7 +189,7 @@ fn write(
 }
 
 impl Entry {
-    /// Its picture, twice.
+    /// Names its picture as PNG and as SVG.
     fn files(&self) -> [String; 2] {
         ["png", "svg"].map(|extension| format!("{}.{extension}", self.stem))
     }

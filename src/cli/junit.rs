@@ -1,4 +1,4 @@
-//! JUnit XML, which CI services show: a test suite a subject, a test case a promise.
+//! JUnit XML for CI services: one test suite for each subject, one test case for each promise.
 //!
 //! There is no standard; this is what Jenkins, GitLab and GitHub's actions read alike.
 
@@ -10,7 +10,7 @@ use quick_xml::events::BytesText;
 use std::io;
 use std::path::Path;
 
-/// Writes the reports, all of them or nothing.
+/// Writes the reports, replacing the file only when all of them are written.
 pub fn write(path: &Path, all: &[Checked]) -> Result<()> {
     let text = xml(all).map_err(|e| Error::Internal(format!("JUnit: {e}")))?;
     let partial = path.with_added_extension("partial");
@@ -18,7 +18,7 @@ pub fn write(path: &Path, all: &[Checked]) -> Result<()> {
     std::fs::rename(&partial, path).map_err(Error::io("write", path))
 }
 
-/// The attributes that count tests, of one suite or of all.
+/// Counts tests, failures and seconds, for the attributes of one suite or of all.
 fn totals<'a>(all: impl Iterator<Item = &'a Checked> + Clone) -> [(&'static str, String); 4] {
     let findings = all.clone().flat_map(|checked| &checked.report.findings);
     let broken = findings.clone().filter(|f| f.verdict == Verdict::Broken).count();
@@ -48,7 +48,7 @@ fn xml(all: &[Checked]) -> io::Result<Vec<u8>> {
     Ok(text)
 }
 
-/// A subject.
+/// Writes the test suite of a subject.
 fn suite(writer: &mut Writer<Vec<u8>>, checked: &Checked) -> io::Result<()> {
     let report = &checked.report;
     let suite = writer.create_element("testsuite").with_attribute(("name", report.subject.as_str()));
@@ -63,7 +63,7 @@ fn suite(writer: &mut Writer<Vec<u8>>, checked: &Checked) -> io::Result<()> {
     Ok(())
 }
 
-/// A promise.
+/// Writes the test case of a promise.
 fn case(
     writer: &mut Writer<Vec<u8>>,
     subject: &str,

@@ -16,7 +16,7 @@ use crate::io::target::IDENTITY;
 use crate::io::{Format, Provenance, TableEntry, TableSet, format, sha256};
 use crate::light;
 use crate::light::bake::Order;
-use crate::light::{Clamped, Light};
+use crate::light::{Clamped, InvalidTexels, Light};
 use crate::scene;
 use crate::scene::{Material, Scene};
 use crate::table::Table;
@@ -29,61 +29,61 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub struct Args {
-    /// A scene (.gltf, .glb), a recipe (.toml) or a model, which is lit; irradiance and sh need none
+    /// The surface to light: needed for radiance and radiosity only
     #[arg(value_name = "SCENE|RECIPE|MODEL")]
     subject: Option<String>,
-    /// An environment map of latitude and longitude: OpenEXR, or Radiance HDR
+    /// An environment map in latitude and longitude: OpenEXR or Radiance HDR
     #[arg(long, value_name = "FILE", conflicts_with = "sky", required_unless_present = "sky")]
     env: Option<PathBuf>,
-    /// A light in words in place of a map: see below
+    /// A light given by its parameters instead of a map: see below
     #[arg(long, value_name = "LIGHT", value_parser = sky::parse)]
     sky: Option<Light>,
-    /// Turn the map about the zenith, from +x towards +y: degrees, or radians as 0.5rad
+    /// Rotate the map about the zenith, from +x towards +y: degrees, or radians as 0.5rad
     #[arg(long, value_name = "ANGLE", default_value = "0", value_parser = sky::angle, allow_negative_numbers = true)]
     rotate: f64,
-    /// Mend texels that are no radiance: negative and NaN become 0, infinite the largest that is finite
+    /// Replace negative and NaN texels by 0, and infinite ones by the largest finite value
     #[arg(long)]
     clamp: bool,
-    /// What to bake
+    /// The quantity to compute
     #[arg(long, value_name = "irradiance|radiance|radiosity|sh", default_value = "irradiance")]
     quantity: Wanted,
-    /// The folder for the tables, manifest.json and light.png; made if it is not there
+    /// The folder for the tables, manifest.json and light.png, created if missing
     #[arg(long, short, value_name = "DIR")]
     out: PathBuf,
-    /// Normals over the sphere, θn × φn [default: 32x64; of radiance the one of --normal]
+    /// Normals over the sphere, θn × φn [default: 32x64; for radiance: the one --normal]
     #[arg(long, value_name = "N×M", value_parser = grid, conflicts_with = "normal")]
     normals: Option<[usize; 2]>,
-    /// One normal, θn and φn: degrees, or radians as 0.5rad [default: 0,0 of radiance]
+    /// One normal, θn and φn: degrees, or radians as 0.5rad [default: 0,0 for radiance]
     #[arg(long, value_name = "θ,φ", value_parser = sky::pair, allow_negative_numbers = true)]
     normal: Option<[f64; 2]>,
-    /// Exitant directions of radiance, θe × φe: nodes from 0 to 90°, and centres of a turn
+    /// Exitant directions of radiance: θe at nodes from 0 to 90°, φe at cell centres of the full circle
     #[arg(long, value_name = "N×M", default_value = "16x1", value_parser = grid)]
     exits: [usize; 2],
-    /// Roughnesses of radiance, in place of the material's own
+    /// Roughnesses for radiance, instead of the material's
     #[arg(long, value_name = "R[,R…]", value_delimiter = ',')]
     roughness: Vec<f64>,
-    /// The material of the scene, where there are several
+    /// The material of the scene, if it has several
     #[arg(long, value_name = "NAME")]
     material: Option<String>,
-    /// A parameter of the model, or of what varies in the material; repeat for more
+    /// Set a parameter of the model, or a varying parameter of the material; may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// The error that no table may exceed, relative to the value or to 1/1000 of the table's largest
+    /// The largest error of a table, relative to the value or to 1/1000 of the table's largest value
     #[arg(long, value_name = "T", default_value = "1e-4", value_parser = tolerance)]
     tolerance: f64,
-    /// auto: the best GPU, else software Vulkan, else the CPU path; cpu; or a part of an adapter's name
+    /// `auto` (best GPU, else software Vulkan, else CPU), `cpu`, or part of an adapter's name
     #[arg(long, value_name = "NAME", default_value = "auto")]
     device: DeviceChoice,
     /// Files to write for each table, separated by commas
     #[arg(long, value_name = "F", value_delimiter = ',', default_value = "exr,png", value_parser = format::find)]
     format: Vec<&'static Format>,
-    /// Texels of each table to compare with the f64 reference: a count, or all [default: 256; of radiance and radiosity 8]
+    /// Texels of each table to compare with the f64 reference: a count, or all [default: 256; for radiance and radiosity: 8]
     #[arg(long, value_name = "N")]
     check: Option<Check>,
-    /// No picture of the light and of lit spheres
+    /// Do not draw the light and lit spheres
     #[arg(long)]
     no_picture: bool,
-    /// Print the manifest on stdout, and everything for people on stderr
+    /// Print the manifest on stdout and messages on stderr
     #[arg(long)]
     json: bool,
 }
@@ -96,19 +96,19 @@ Examples:
   gonio light ggx --set f0=0.04 --roughness 0.1,0.3,0.5,0.7,0.9 --env museum.exr --quantity radiance --out light
   gonio light lambert --set albedo=0.8 --sky constant:1 --quantity radiosity --out light
 
-Lights in words: a kind, and after a colon what it takes; a radiance is a number, or R/G/B.
-  constant:L                        the same from everywhere
+A light is KIND:PARAMETERS. A radiance L or irradiance E is a number, or R/G/B; A is an angle.
+  constant:L                        the same radiance from all directions
   sky:zenith=L,horizon=L,ground=L   a gradient in cos θ above the horizon
   disk:theta=A,phi=A,radius=A,radiance=L
-  sun:theta=A,phi=A,irradiance=E    from one direction
+  sun:theta=A,phi=A,irradiance=E    light from one direction
 
-The world has z up. A map has the zenith at its top and +x in its middle, +y to the left of that: seen from
-inside nothing is mirrored. A surface's tangent points where θn grows.
+The world has z up. A map has the zenith at its top, +x in its middle and +y to the left of the middle: it is
+not mirrored when seen from inside. A surface's tangent points towards larger θn.
 
 Exit codes: 0 success, 1 a table misses its tolerance, 2 bad input, 3 no device, 130 interrupted.
-Whatever was in DIR stays as it was unless all of it succeeds.";
+If anything fails, DIR keeps its old contents.";
 
-/// The tables that are asked for together.
+/// The quantity of `--quantity`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Wanted {
     Irradiance,
@@ -122,7 +122,7 @@ fn tolerance(text: &str) -> Result<f64, String> {
     if value > 0.0 && value <= 1.0 { Ok(value) } else { Err("give a number above 0, to 1".into()) }
 }
 
-/// "32x64" or "32×64".
+/// Parses a grid: "32x64" or "32×64".
 fn grid(text: &str) -> Result<[usize; 2], String> {
     let why = || format!("\"{text}\" is no grid; give two counts, as in 32x64");
     let (rows, columns) = text.split_once(['x', '×']).ok_or_else(why)?;
@@ -131,7 +131,7 @@ fn grid(text: &str) -> Result<[usize; 2], String> {
 }
 
 /// What is lit.
-struct Subject {
+struct LitMaterial {
     scene: Scene,
     material: Material,
 }
@@ -155,9 +155,9 @@ pub fn run(args: &Args) -> Result<()> {
     say(&format!("{HEADING}light{HEADING:#}   {}: {}", source.name, light.summary()))?;
     let mut set = TableSet::create(&args.out)?;
     let watch = Watch::new(5);
-    let made = make(args, &light, &source, lit.as_ref(), &evaluator, &watch, &mut set);
+    let computed = compute(args, &light, &source, lit.as_ref(), &evaluator, &watch, &mut set);
     watch.finish();
-    let (tables, manifest) = made?;
+    let (tables, manifest) = computed?;
     set.commit(&manifest)?;
     for table in &tables {
         let number = |x: Option<f64>| x.map_or("–".into(), |x| format!("{x:.1e}"));
@@ -178,26 +178,28 @@ pub fn run(args: &Args) -> Result<()> {
             "  three bands miss the irradiance by {off:.4} of ∫ L dω at most; 0.0938 is the bound"
         ))?;
     }
-    say(&format!("{} tables in {}", tables.len(), args.out.display()))?;
+    let noun = if tables.len() == 1 { "table" } else { "tables" };
+    say(&format!("{} {noun} in {}", tables.len(), args.out.display()))?;
     if args.json { print_json(&manifest) } else { Ok(()) }
 }
 
-/// Where a light comes from.
-struct Source {
+/// The name of a light, its description for the manifest, and the hash of its file.
+struct LightSource {
     name: String,
     json: Value,
     sha256: Option<String>,
 }
 
-fn light_of(args: &Args) -> Result<(Light, Source)> {
+fn light_of(args: &Args) -> Result<(Light, LightSource)> {
     let Some(path) = &args.env else {
         let light = args.sky.clone().ok_or_else(|| Error::input("give --env FILE or --sky LIGHT"))?;
-        light.check().map_err(|error| error.at("--sky"))?;
         let name = light.summary();
         let json = json!({ "kind": name });
-        return Ok((light, Source { name, json, sha256: None }));
+        return Ok((light, LightSource { name, json, sha256: None }));
     };
-    let (map, clamped) = light::read(path, args.clamp)?;
+    let invalid =
+        if args.clamp { InvalidTexels::Clamp } else { InvalidTexels::Refuse { remedy: "give --clamp" } };
+    let (map, clamped) = light::read(path, invalid)?;
     if map.width() != 2 * map.height() {
         warn(&format!(
             "{}: {} × {} texels; a map of latitude and longitude is twice as wide as high",
@@ -216,17 +218,17 @@ fn light_of(args: &Args) -> Result<(Light, Source)> {
         "height": map.height(), "rotation": map.rotation(), "clamped": clamped,
     });
     let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    Ok((Light::Map(map), Source { name, json, sha256: Some(hash) }))
+    Ok((Light::Map(map), LightSource { name, json, sha256: Some(hash) }))
 }
 
-/// The scene or model, and the material of it that is lit.
-fn lit(args: &Args) -> Result<Option<Subject>> {
+/// Reads the scene or model, and finds the material to light.
+fn lit(args: &Args) -> Result<Option<LitMaterial>> {
     let Some(name) = &args.subject else { return Ok(None) };
     let sets = args.set.iter().map(|set| key_value(set)).collect::<Result<Vec<_>>>()?;
     let path = Path::new(name);
     if path.extension().is_none() && !path.exists() {
         let mut sets = sets;
-        // A model needs a roughness, which --roughness may be all that is given of.
+        // A model needs a roughness; --roughness alone must be enough.
         let model = crate::model::find(name)?;
         let first = args.roughness.first().map(f64::to_string).unwrap_or_default();
         if let (Some(shape), Some(_)) = (model.shape, args.roughness.first())
@@ -236,7 +238,7 @@ fn lit(args: &Args) -> Result<Option<Subject>> {
         }
         let scene = subject::model(name, sets.iter().copied())?;
         let material = scene.materials[0].clone();
-        return Ok(Some(Subject { scene, material }));
+        return Ok(Some(LitMaterial { scene, material }));
     }
     let scene = scene::read(path)?;
     let material = match (&args.material, &scene.materials[..]) {
@@ -247,7 +249,7 @@ fn lit(args: &Args) -> Result<Option<Subject>> {
             return Err(Error::input(format!("{name}: give --material, one of {}", names.join(", "))));
         }
     };
-    // --roughness takes the place of what varies: any value within its range will do.
+    // --roughness replaces a varying roughness: any value within its range will do.
     let varying = scene.material(&material)?.varying();
     let varies = varying.iter().find(|(name, _)| name == "roughness").map(|(_, [low, _])| low.to_string());
     let mut sets = sets;
@@ -258,10 +260,10 @@ fn lit(args: &Args) -> Result<Option<Subject>> {
     }
     let scene = subject::material(scene, &material, sets)?;
     let material = scene.material(&material)?.clone();
-    Ok(Some(Subject { scene, material }))
+    Ok(Some(LitMaterial { scene, material }))
 }
 
-/// Normals over the sphere, or one.
+/// Builds the axes of the normals: a grid over the sphere, or the one normal of `--normal`.
 fn normals(args: &Args, grid: Option<[usize; 2]>) -> Result<[Axis; 2]> {
     let Some([rows, columns]) = grid else {
         let [theta, phi] = args.normal.unwrap_or([0.0; 2]);
@@ -272,11 +274,11 @@ fn normals(args: &Args, grid: Option<[usize; 2]>) -> Result<[Axis; 2]> {
 }
 
 #[allow(clippy::too_many_arguments)]
-fn make(
+fn compute(
     args: &Args,
     light: &Light,
-    source: &Source,
-    lit: Option<&Subject>,
+    source: &LightSource,
+    lit: Option<&LitMaterial>,
     evaluator: &Evaluator,
     observer: &dyn Observer,
     set: &mut TableSet,
@@ -292,7 +294,7 @@ fn make(
     let spread = args.normals.or(args.normal.is_none().then_some(NORMALS));
     let mut truncation = Value::Null;
     let tables = match (args.quantity, lit) {
-        (Wanted::Radiance, Some(Subject { material, .. })) => {
+        (Wanted::Radiance, Some(LitMaterial { material, .. })) => {
             let [theta_n, phi_n] = normals(args, args.normals)?;
             let [rows, columns] = args.exits;
             let theta_e = match rows {
@@ -308,7 +310,7 @@ fn make(
             let off = difference(&exact, &split);
             vec![exact, split, off]
         }
-        (Wanted::Radiosity, Some(Subject { scene, material })) => {
+        (Wanted::Radiosity, Some(LitMaterial { scene, material })) => {
             order.radiosity(scene, &material.name, normals(args, spread)?, &mut stages)?.to_vec()
         }
         (Wanted::Sh, _) => {
@@ -352,7 +354,7 @@ fn make(
     Ok((tables, manifest))
 }
 
-/// |LD (F0·A + F90·B) − Le| / Le, where Le is not nearly 0.
+/// Computes |LD (F0·A + F90·B) − Le| / Le, with Le at least the table's floor.
 fn difference(exact: &Table, split: &Table) -> Table {
     let floor = exact.error.floor.unwrap_or(0.0).max(f64::MIN_POSITIVE);
     let pairs = exact.values.iter().zip(split.values.iter());

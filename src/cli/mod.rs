@@ -31,25 +31,25 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Bake the tables that a scene needs, and measure their error
+    /// Bake the tables of a scene or recipe and measure their error
     Bake(bake::Args),
-    /// Evaluate a BRDF for one pair of directions, or a list of them
+    /// Evaluate a BRDF for one pair of directions or for a list of pairs
     Eval(eval::Args),
-    /// Hunt for inputs that break what a BRDF promises: finite, reciprocal, no energy gained
+    /// Search for inputs at which a BRDF is not finite, not reciprocal, or gains energy
     Check(check::Args),
-    /// Measure what f32 loses against f64: by model, by decade of α, and where it is worst
+    /// Measure the error of f32 against f64 for each model and decade of α
     Atlas(atlas::Args),
-    /// Draw a BRDF at one or several settings: its lobe, lit spheres, its reflectance
+    /// Draw a BRDF: its lobe, its albedo and lit spheres
     Plot(plot::Args),
-    /// Make a page with a picture of every model
+    /// Make a web page with a picture of every model
     Gallery(gallery::Args),
-    /// Measure time against error: every method at every cost
+    /// Compare the time and error of all integration methods
     Trade(trade::Args),
-    /// Bake what a light does: irradiance, its harmonics, what a material sends back
+    /// Compute irradiance, spherical harmonics, exitant radiance or radiosity under a light
     Light(Box<light::Args>),
-    /// List the models and the parts that they are made of, or one in detail
+    /// List all models and their parts, or describe one model
     Models(models::Args),
-    /// List the devices that can bake
+    /// List the devices and test their drivers
     Devices(devices::Args),
 }
 
@@ -66,7 +66,8 @@ Examples:
   gonio models ggx
   gonio devices
 
-Exit codes: 0 success, 1 a promise is not met, 2 bad input, 3 no device, 70 internal error, 130 interrupted";
+Exit codes: 0 success, 1 a table misses its tolerance, or a BRDF breaks a promise, 2 bad input, 3 no device,
+70 internal error, 130 interrupted";
 
 /// Bold red.
 const ERROR: Style = AnsiColor::Red.on_default().bold();
@@ -98,7 +99,7 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// The table in the README.
+/// Maps an error to the exit code that docs/drivers.md lists for its kind.
 fn exit_code(error: &Error) -> u8 {
     match error {
         Error::Promise(_) => 1,
@@ -109,7 +110,7 @@ fn exit_code(error: &Error) -> u8 {
     }
 }
 
-/// Prints a line on stderr; where nobody can be told, nobody is.
+/// Prints a line on stderr. A closed stderr is no error: there is nobody left to tell.
 fn tell(text: &str) {
     let _ = writeln!(anstream::stderr(), "{text}");
 }
@@ -118,7 +119,7 @@ fn warn(message: &str) {
     tell(&format!("{WARNING}warning:{WARNING:#} {message}"));
 }
 
-/// What is baked on, as JSON files say it.
+/// Describes the evaluator for JSON files.
 fn device_json(evaluator: &Evaluator) -> Value {
     match evaluator {
         Evaluator::Device(device) => {
@@ -128,7 +129,7 @@ fn device_json(evaluator: &Evaluator) -> Value {
     }
 }
 
-/// Prints a line for people: on stdout, or on stderr where stdout is for JSON.
+/// Prints a message on stdout, or on stderr if stdout carries JSON.
 fn print_beside(json: bool, text: &str) -> Result<()> {
     if json {
         tell(text);
@@ -143,7 +144,7 @@ fn print_json(value: &impl serde::Serialize) -> Result<()> {
     print(&text)
 }
 
-/// Prints a line on stdout. Whoever reads it may stop at any time.
+/// Prints a line on stdout. A reader that closes the pipe early, as `head` does, is no error.
 fn print(text: &str) -> Result<()> {
     match writeln!(anstream::stdout(), "{text}") {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::io("write", "stdout")(error)),

@@ -13,18 +13,18 @@ use serde_json::{Value, json};
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub struct Args {
-    /// One model in detail: its parameters, parts, source and promises; or a Fresnel term, on the ideal mirror
+    /// A model to describe: its parameters, parts, source and promises; or a Fresnel term, on the ideal mirror
     #[arg(value_name = "NAME")]
     name: Option<String>,
-    /// Measure what tolerances cost: ρ_dh and ρ_hh of the model, or of each, at the extremes of θi and roughness, the
-    /// evaluations that a texel takes and the largest error against the f64 reference
+    /// For each tolerance, measure evaluations for a texel and largest error of ρ_dh and ρ_hh, at extreme θi and
+    /// roughness
     #[arg(long)]
     costs: bool,
     /// With --costs: the tolerances
     #[arg(long, value_name = "T", num_args = 1.., requires = "costs", default_values_t = [1e-2, 1e-4, 1e-6],
           value_parser = crate::cli::bake::tolerance)]
     tolerance: Vec<f64>,
-    /// With --costs: auto, the best GPU, else software Vulkan, else the CPU path; cpu; or a part of an adapter's name
+    /// With --costs: `auto` (best GPU, else software Vulkan, else CPU), `cpu`, or part of an adapter's name
     #[arg(long, value_name = "NAME", requires = "costs", default_value = "auto")]
     device: DeviceChoice,
     /// Print JSON on stdout
@@ -43,7 +43,7 @@ Examples:
 
 Exit codes: 0 success, 1 a tolerance is missed, 2 no such model, 3 no device, 130 interrupted";
 
-/// A parameter, in the words of recipes and of --set.
+/// A parameter, with its name in recipes and in `--set`.
 pub(super) struct Parameter {
     pub name: &'static str,
     pub range: String,
@@ -71,7 +71,7 @@ pub fn run(args: &Args) -> Result<()> {
     }
 }
 
-/// The model of this name, or the mirror with a Fresnel term of this name: it has the term's parameters and no more.
+/// Finds a model, or the ideal mirror with the Fresnel term of this name: its parameters are the term's alone.
 fn model_or_term(name: &str) -> Result<&'static Model> {
     match FRESNELS.iter().any(|term| term.name == name) {
         true => model::find("mirror")?.with_terms(None, Some(name)),
@@ -80,9 +80,11 @@ fn model_or_term(name: &str) -> Result<&'static Model> {
 }
 
 fn list() -> Result<()> {
+    let terms = MASKINGS.iter().chain(&FRESNELS).map(|term| term.name);
+    let width = column(MODELS.iter().map(|model| model.name).chain(terms));
     let line = |name: &str, summary: &str, is_counted: bool| {
         let slow = if is_counted { "" } else { " (integrals are slow)" };
-        print(&format!("  {name:26}{summary}{slow}"))
+        print(&format!("  {name:width$}{summary}{slow}"))
     };
     print(&format!("{HEADING}models{HEADING:#}"))?;
     MODELS.iter().try_for_each(|model| line(model.name, model.summary, model.has_counts()))?;
@@ -114,10 +116,15 @@ fn one(model: &Model, as_json: bool) -> Result<()> {
     print(&format!("{HEADING}{}{HEADING:#}  {}", model.name, model.summary))?;
     print(&format!("{HEADING}source{HEADING:#}  {}", model.source))?;
     print(&format!("{HEADING}parameters{HEADING:#}"))?;
+    let width = column(parameters.iter().map(|parameter| parameter.name));
     for Parameter { name, range, unit, default, what } in &parameters {
         let default = default.as_ref().map_or("no default".into(), |default| format!("default {default}"));
-        print(&format!("  {name:10}{what}"))?;
-        print(&format!("  {:10}{range}{}{unit}; {default}", "", if unit.is_empty() { "" } else { ", " }))?;
+        print(&format!("  {name:width$}{what}"))?;
+        print(&format!(
+            "  {:width$}{range}{}{unit}; {default}",
+            "",
+            if unit.is_empty() { "" } else { ", " }
+        ))?;
     }
     print(&format!("{HEADING}parts{HEADING:#}"))?;
     for part in model.parts {
@@ -129,16 +136,22 @@ fn one(model: &Model, as_json: bool) -> Result<()> {
     if !model.metals().is_empty() {
         print(&format!("{HEADING}metals{HEADING:#}"))?;
     }
+    let width = column(model.metals().iter().map(|metal| metal.name));
     for Metal { name, eta, k, source } in model.metals() {
-        print(&format!("  {name:10}eta = {eta:?}, k = {k:?}; {source}"))?;
+        print(&format!("  {name:width$}eta = {eta:?}, k = {k:?}; {source}"))?;
     }
     print(&format!("{HEADING}promises{HEADING:#}"))?;
     promises.iter().try_for_each(|promise| print(&format!("  {promise}")))
 }
 
+/// Returns the width of a column of names, with two blanks after the longest.
+fn column<'a>(names: impl Iterator<Item = &'a str>) -> usize {
+    names.map(str::len).max().unwrap_or(0) + 2
+}
+
 const DIMENSIONLESS: &str = "dimensionless";
 
-/// What a model takes.
+/// Lists all parameters of a model.
 pub(super) fn parameters(model: &Model) -> Vec<Parameter> {
     let mut all = Vec::new();
     if let Some(Shape { name, summary, unit, most, least, .. }) = model.shape {
@@ -156,7 +169,7 @@ pub(super) fn parameters(model: &Model) -> Vec<Parameter> {
                 range: format!("[0, {most}]"),
                 unit: if unit.is_empty() { DIMENSIONLESS } else { unit },
                 default: None,
-                what: "in place of roughness: one of the two is needed".into(),
+                what: "replaces roughness: give one of the two".into(),
             });
         }
     }
@@ -173,7 +186,7 @@ pub(super) fn parameters(model: &Model) -> Vec<Parameter> {
             range: model.metals().iter().map(|metal| metal.name).collect::<Vec<_>>().join(" | "),
             unit: "",
             default: Some("none".into()),
-            what: "in place of eta and k, for R, G and B at 611.4, 549.1 and 464.2 nm".into(),
+            what: "replaces eta and k, for R, G and B at 611.4, 549.1 and 464.2 nm".into(),
         });
     }
     all.extend(model.terms().into_iter().map(|(name, terms, term)| Parameter {
@@ -188,19 +201,19 @@ pub(super) fn parameters(model: &Model) -> Vec<Parameter> {
         range: Compensation::ALL.map(Compensation::name).join(" | "),
         unit: "",
         default: Some(Compensation::None.name().into()),
-        what: "what gives back the light that is lost between microfacets".into(),
+        what: "method that restores the light lost between microfacets".into(),
     }));
     all.extend(model.components.iter().map(|&Component { name, weight, default }| Parameter {
         name: weight,
         range: "[0, 1], or three for R, G, B".into(),
         unit: DIMENSIONLESS,
         default: default.map(|x| x.to_string()),
-        what: format!("what weighs component {name}"),
+        what: format!("weight of component {name}"),
     }));
     all
 }
 
-/// Three settings that show what a model does, as `--set` has them: its roughness, or else what weighs it.
+/// Returns `--set` options for three settings that show a model: of its roughness, or else of its weights.
 pub(super) fn settings(model: &Model) -> Vec<String> {
     let mut sets = Vec::new();
     if let Some(shape) = model.shape {
@@ -218,7 +231,7 @@ pub(super) fn settings(model: &Model) -> Vec<String> {
     sets
 }
 
-/// What a model keeps, and what it is known to break.
+/// Describes the promises that a model keeps, and its known bounds.
 pub(super) fn promises(model: &Model) -> Vec<String> {
     let mut promises = vec!["finite, not negative, reciprocal, isotropic".to_owned()];
     promises.push(match model.integral {

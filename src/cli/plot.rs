@@ -20,29 +20,29 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub struct Args {
-    /// A model, or with --material a scene or recipe
+    /// A model, or a scene or recipe with --material
     #[arg(value_name = "MODEL|SCENE")]
     subject: String,
     /// A material of the scene
     #[arg(long, value_name = "NAME")]
     material: Option<String>,
-    /// A parameter of the model, by its name in recipes, or of what varies in the material; repeat for more.
-    /// One of them may have up to five values, a curve each [default: three settings of the model]
+    /// Set a parameter of the model, or a varying parameter of the material; may be repeated. One parameter may
+    /// have up to five values, each drawn as a curve [default: three settings of the model]
     #[arg(long, value_name = "KEY=VALUE[,VALUE…]")]
     set: Vec<String>,
     /// Zenith angles of incidence, up to three: degrees, or radians as 0.5rad
     #[arg(long, value_name = "ANGLE[,ANGLE…]", default_value = "45", value_delimiter = ',', value_parser = theta)]
     theta: Vec<f64>,
-    /// The radius of the polar plot: linear, log, or what the lobes' peaks ask for
+    /// Scale of the radius of the polar plot; auto chooses by the height of the peaks
     #[arg(long, value_name = "auto|linear|log", default_value = "auto", value_parser = radius)]
     radius: Radius,
-    /// The picture, .png or .svg; repeat for both [default: NAME.png]
+    /// The picture, .png or .svg; may be repeated [default: NAME.png]
     #[arg(long, short, value_name = "FILE")]
     out: Vec<PathBuf>,
-    /// auto: the best GPU, else software Vulkan, else the CPU path; cpu; or a part of an adapter's name
+    /// `auto` (best GPU, else software Vulkan, else CPU), `cpu`, or part of an adapter's name
     #[arg(long, value_name = "NAME", default_value = "auto")]
     device: DeviceChoice,
-    /// Print what the picture shows as JSON on stdout, and everything for people on stderr
+    /// Print what the picture shows as JSON on stdout and messages on stderr
     #[arg(long)]
     json: bool,
 }
@@ -55,8 +55,8 @@ Examples:
   gonio plot ggx --set roughness=0.5 --set masking=smith-correlated,smith-separable,none
   gonio plot recipe.toml --material gold
 
-The picture: f cos θe in the plane of incidence; ρ_dh over θ, with the white furnace; f over the hemisphere,
-seen along the normal; a sphere under a point light, and one under uniform light, which is ρ_dh(θe).
+The picture shows f cos θe in the plane of incidence; ρ_dh over θ with the white furnace; f over the
+hemisphere, seen along the normal; a sphere under a point light, and one under uniform light: ρ_dh(θe).
 
 Exit codes: 0 success, 1 ρ_dh misses its tolerance, 2 bad input, 3 no device, 130 interrupted";
 

@@ -1,19 +1,19 @@
-//! What a command is about, in a recipe's own words: a model with `--set`, or a material of a scene.
+//! The subject of a command: a model with `--set`, or a material of a scene.
 
 use crate::base::error::{Error, Result};
 use crate::model;
 use crate::scene;
 use crate::scene::Scene;
 
-/// `KEY=VALUE`, without the blanks around either.
+/// Splits `KEY=VALUE` and trims both.
 pub fn key_value(set: &str) -> Result<(&str, &str)> {
     let pair = set.split_once('=').map(|(key, value)| (key.trim(), value.trim()));
     pair.filter(|(key, value)| !key.is_empty() && !value.is_empty())
         .ok_or_else(|| Error::input(format!("--set {set}: give KEY=VALUE, as in --set roughness=0.3")))
 }
 
-/// A scene of one material with one lobe: the model with these parameters. The recipe's own reader says what
-/// is wrong with a name or a value. The material is called by the name that tells the model's terms.
+/// Builds a scene of one material with one lobe: the model with these parameters. The recipe's reader reports
+/// wrong names and values. The material is named after the model with its terms.
 pub fn model<'a>(name: &str, sets: impl IntoIterator<Item = (&'a str, &'a str)>) -> Result<Scene> {
     let name = model::find(name)?.name;
     let mut lobe = format!("model = \"{name}\"");
@@ -31,7 +31,7 @@ pub fn model<'a>(name: &str, sets: impl IntoIterator<Item = (&'a str, &'a str)>)
     }
 }
 
-/// A value as TOML: a word needs no quotes on a command line.
+/// Writes a value as TOML: adds the quotes that a word needs there and not on a command line.
 fn toml(value: &str) -> String {
     let is_word = !matches!(value, "nan" | "inf" | "true" | "false")
         && value.starts_with(|c: char| c.is_ascii_alphabetic())
@@ -39,7 +39,7 @@ fn toml(value: &str) -> String {
     if is_word { format!("\"{value}\"") } else { value.to_owned() }
 }
 
-/// The scene, its material at one setting of what varies in it.
+/// Sets the varying parameters of a material of the scene to fixed values.
 pub fn material<'a>(
     mut scene: Scene,
     name: &str,
@@ -52,7 +52,7 @@ pub fn material<'a>(
         Ok((key.to_owned(), value?))
     };
     let setting = sets.into_iter().map(number).collect::<Result<Vec<_>>>()?;
-    let at = scene.material(name)?.at(&setting)?;
-    scene.materials.iter_mut().filter(|material| material.name == name).for_each(|m| m.clone_from(&at));
+    let fixed = scene.material(name)?.at(&setting)?;
+    scene.materials.iter_mut().filter(|material| material.name == name).for_each(|m| m.clone_from(&fixed));
     Ok(scene)
 }

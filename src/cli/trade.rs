@@ -17,9 +17,9 @@ use std::path::PathBuf;
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub struct Args {
-    /// A recipe (.toml) or scene: its first table of integrals is measured
+    /// A recipe (.toml) or scene, whose first table of integrals is measured
     recipe: Option<PathBuf>,
-    /// The folder for trade.csv, trade.json and trade.png; made if it is not there
+    /// The folder for trade.csv, trade.json and trade.png, created if missing
     #[arg(long, short, value_name = "DIR")]
     out: PathBuf,
     #[arg(long, value_name = "Q", help = which_quantity())]
@@ -30,17 +30,17 @@ pub struct Args {
     /// Without a recipe: samples along each axis
     #[arg(long, value_name = "N", default_value = "128", conflicts_with = "recipe")]
     size: usize,
-    /// auto: the best GPU, else software Vulkan, else the CPU path; cpu; or a part of an adapter's name
+    /// `auto` (best GPU, else software Vulkan, else CPU), `cpu`, or part of an adapter's name
     #[arg(long, value_name = "NAME", default_value = "auto")]
     device: DeviceChoice,
-    /// About how long to measure: 60, 60s or 2m. Counted in evaluations at a nominal speed, so that a slow
-    /// device takes longer and no result depends on the clock
+    /// About how long to measure: 60, 60s or 2m. Counted in evaluations: a slow device takes longer, and results
+    /// do not depend on speed
     #[arg(long, value_name = "TIME", default_value = "60s", value_parser = seconds)]
     budget: f64,
-    /// Texels to compare with the f64 reference: a seeded subset, the same for all methods, or all
+    /// Texels to compare with the f64 reference: all, or a seeded subset that is the same for all methods
     #[arg(long, value_name = "TEXELS", default_value = "subset", value_parser = ["subset", "all"])]
     check: String,
-    /// Print trade.json on stdout, and everything for people on stderr
+    /// Print trade.json on stdout and messages on stderr
     #[arg(long)]
     json: bool,
 }
@@ -58,14 +58,14 @@ Examples:
   gonio trade dfg.toml --device cpu --out trade
 
 Methods: warped (this project's), gauss and grid (over θ and φ), hammersley (what most bakers do),
-vndf (visible normals) and random. A point is marked * where nothing measured is both faster and
-more exact, and ~ where only the subset was computed and its time is extrapolated. Tables are
-stored as computed; those of warped are also measured as f16 and unorm16, where these round by less than
-the tolerance: in half the bytes, by a finer rule that leaves room for the rounding.
+vndf (visible normals) and random.
+`*`: no other point is both faster and more exact. `~`: time extrapolated from the subset.
+Tables are stored as computed. `warped` is also measured in f16 and unorm16 if their rounding is below the
+tolerance. They use a finer rule to leave room for the rounding.
 
 Exit codes: 0 success, 2 bad input, 3 no device, 130 interrupted";
 
-/// A time span in seconds.
+/// Parses a time span, in seconds.
 fn seconds(text: &str) -> Result<f64, String> {
     let (number, unit) = match text.strip_suffix('m') {
         Some(number) => (number, 60.0),
@@ -97,7 +97,7 @@ pub fn run(args: &Args) -> Result<()> {
     if args.json { print_json(&json) } else { Ok(()) }
 }
 
-/// The table to measure.
+/// Plans the table to measure.
 fn table(args: &Args) -> Result<TablePlan> {
     let Some(path) = &args.recipe else {
         let quantity = quantity::find(args.quantity.as_deref().unwrap_or("split_sum"))?;
@@ -119,7 +119,7 @@ fn table(args: &Args) -> Result<TablePlan> {
     })
 }
 
-/// What people read.
+/// Formats the results as lines of text.
 fn lines(trade: &Trade) -> Vec<String> {
     let mut lines = vec![
         format!("{HEADING}table{HEADING:#}   {}", trade.table),
@@ -160,7 +160,7 @@ fn line(p: &Point) -> String {
     } else {
         ' '
     };
-    // Of what was computed: its spread does not say much of what was not.
+    // The spread is measured on the computed subset and scaled like its time.
     let scale = p.table_seconds / p.seconds;
     format!(
         "{mark} {:10}  {:>11}  {:7}  {:>11.2e}  {:>7} ms  {:>19}  {:>7} ms  {:>9.1e}  {:>9.1e}  {:>6}",

@@ -1,4 +1,4 @@
-//! Progress for people, and Ctrl-C.
+//! The progress bar and Ctrl-C.
 
 use crate::bake::Observer;
 use crate::base::error::{Error, Result};
@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A bar that appears after a second, on a terminal only, and a stop on Ctrl-C.
+/// Shows a progress bar after a second, on a terminal only, and stops the work on Ctrl-C.
 pub struct Watch {
     bar: ProgressBar,
     start: Stopwatch,
@@ -15,7 +15,7 @@ pub struct Watch {
     stop: Arc<AtomicBool>,
 }
 
-/// Steps begun, and the share done of the last.
+/// Counts the steps begun, and the share done of the last.
 struct Step {
     count: u64,
     share: f64,
@@ -27,7 +27,7 @@ const TICKS: u64 = 100;
 const PATIENCE: f64 = 1.0;
 
 impl Watch {
-    /// Watches so many steps.
+    /// Expects this number of steps.
     pub fn new(steps: usize) -> Self {
         let stop = Arc::new(AtomicBool::new(false));
         let asked = stop.clone();
@@ -40,12 +40,12 @@ impl Watch {
         Self { bar, start: Stopwatch::start(), step: Mutex::new(Step { count: 0, share: 0.0 }), stop }
     }
 
-    /// Prints with the bar out of the way.
+    /// Prints while the bar is hidden.
     pub fn hide<T>(&self, print: impl FnOnce() -> T) -> T {
         self.bar.suspend(print)
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
     }

@@ -16,14 +16,14 @@ pub struct Environment {
     height: usize,
     /// R, G, B, row by row from the top.
     texels: Vec<[f32; 3]>,
-    /// By how much the map is turned about the zenith, from +x towards +y, rad.
+    /// The rotation about the zenith, from +x towards +y, rad.
     rotation: f64,
 }
 
 /// The most texels of a map: 400 MiB in memory.
 pub const MAX_TEXELS: usize = 1 << 25;
 
-/// What had to be mended in a map, if that was allowed: how many texels, and the first of them in words.
+/// The texels of a map that were no radiance and were replaced: their number, and the first in words.
 #[derive(Debug, Clone, PartialEq, Eq, Default, serde::Serialize)]
 pub struct Clamped {
     /// Texels with a channel that is no radiance.
@@ -33,22 +33,27 @@ pub struct Clamped {
 }
 
 impl Environment {
-    /// A map of so many columns and rows.
+    /// Builds a map of `width` columns and `height` rows.
     ///
     /// # Errors
     /// When the counts do not fit, or a texel is no radiance: negative, infinite or NaN.
     pub fn new(width: usize, height: usize, texels: Vec<[f32; 3]>) -> Result<Self> {
+        Self::checked(width, height, texels, "clamp it")
+    }
+
+    /// Builds a map, or refuses it with a message that ends in this remedy.
+    pub(super) fn checked(width: usize, height: usize, texels: Vec<[f32; 3]>, remedy: &str) -> Result<Self> {
         let map = Self::unchecked(width, height, texels)?;
         match map.faults() {
             Clamped { first: Some(first), texels } => Err(Error::input(format!(
-                "{first}, and so {texels} of {} texels are no radiance; mend the map, or clamp it",
+                "{first}, and so {texels} of {} texels are no radiance; mend the map, or {remedy}",
                 map.texels.len()
             ))),
             _ => Ok(map),
         }
     }
 
-    /// The same with texels mended: negative and NaN become 0, and infinite the largest that is finite.
+    /// Builds a map, replacing negative and NaN texels by 0, and infinite ones by the largest finite value.
     ///
     /// # Errors
     /// When the counts do not fit.
@@ -57,9 +62,9 @@ impl Environment {
         let faults = map.faults();
         if faults.texels > 0 {
             let finite = map.texels.as_flattened().iter().filter(|x| x.is_finite());
-            let most = finite.copied().fold(0.0, f32::max);
+            let largest = finite.copied().fold(0.0, f32::max);
             for x in map.texels.as_flattened_mut() {
-                *x = if x.is_nan() { 0.0 } else { x.clamp(0.0, most) };
+                *x = if x.is_nan() { 0.0 } else { x.clamp(0.0, largest) };
             }
         }
         Ok((map, faults))
@@ -77,7 +82,7 @@ impl Environment {
         Ok(Self { width, height, texels, rotation: 0.0 })
     }
 
-    /// Texels that are no radiance.
+    /// Counts the texels that are no radiance.
     fn faults(&self) -> Clamped {
         // −0 is 0.
         let fault = |x: &f32| !x.is_finite() || *x < 0.0;
@@ -94,7 +99,7 @@ impl Environment {
         faults
     }
 
-    /// The map turned about the zenith, from +x towards +y, rad.
+    /// Rotates the map about the zenith, from +x towards +y, rad.
     pub fn rotated(self, by: f64) -> Self {
         Self { rotation: (self.rotation + by).rem_euclid(TAU), ..self }
     }
@@ -109,7 +114,7 @@ impl Environment {
         self.height
     }
 
-    /// By how much it is turned, rad.
+    /// The rotation about the zenith, rad.
     pub fn rotation(&self) -> f64 {
         self.rotation
     }
@@ -124,23 +129,23 @@ impl Environment {
         self.texels[row * self.width + column]
     }
 
-    /// θ of the upper border of a row; of the row beyond the last, the nadir's.
+    /// Returns θ of the upper border of a row; `height` gives the nadir.
     pub fn theta(&self, row: usize) -> f64 {
         PI * row as f64 / self.height as f64
     }
 
-    /// The longitude from the map's left edge to the left border of a column, rad: what rises with columns.
+    /// Returns the longitude from the map's left edge to the left border of a column, rad. It rises with columns.
     pub(crate) fn psi(&self, column: usize) -> f64 {
         TAU * column as f64 / self.width as f64
     }
 
-    /// The cell of a texel in the world. Its azimuths ascend, while columns descend.
+    /// Returns the cell of a texel in the world. Its azimuths rise while columns fall.
     pub fn cell(&self, row: usize, column: usize) -> Cell {
         let phi = |column: usize| PI + self.rotation - self.psi(column);
         Cell { theta: [self.theta(row), self.theta(row + 1)], phi: [phi(column + 1), phi(column)] }
     }
 
-    /// L from a direction of the world, unit: that of the texel whose cell it is in.
+    /// Returns L from a direction of the world, a unit vector: the texel whose cell contains it.
     pub fn radiance(&self, direction: [f64; 3]) -> [f64; 3] {
         let (theta, psi) = crate::light::angles(self.turn(direction));
         let row = (theta / PI * self.height as f64) as usize;
@@ -148,14 +153,13 @@ impl Environment {
         self.texel(row.min(self.height - 1), column.min(self.width - 1)).map(f64::from)
     }
 
-    /// A vector of the world in the map's own frame, where the azimuth is [`Environment::psi`], or one of that frame in the
-    /// world: ψ = π + rotation − φ, a reflection, which is its own inverse.
+    /// Transforms a vector between the world and the map's frame, whose azimuth is [`Environment::psi`]: ψ = π + rotation − φ, a reflection, which is its own inverse.
     pub(crate) fn turn(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let (sin, cos) = self.rotation.sin_cos();
         [-(cos * x + sin * y), -sin * x + cos * y, z]
     }
 
-    /// The same function with at least so many columns and rows: each texel repeated.
+    /// Repeats texels until the map has at least this many columns and rows. It stays the same function.
     pub(crate) fn at_least(&self, width: usize, height: usize) -> Cow<'_, Self> {
         let [across, down] = [width.div_ceil(self.width), height.div_ceil(self.height)];
         if across <= 1 && down <= 1 {
@@ -171,8 +175,8 @@ impl Environment {
         Cow::Owned(Self { width, height, texels, rotation: self.rotation })
     }
 
-    /// A map of at most so many columns and rows, each texel the mean radiance of what it covers, weighed with solid
-    /// angles: another function, for pictures.
+    /// Averages the map down to at most this many columns and rows, weighted by solid angle: another function, for
+    /// pictures.
     pub fn reduced(&self, width: usize, height: usize) -> Self {
         let [across, down] = [self.width.div_ceil(width), self.height.div_ceil(height)];
         let [columns, rows] = [self.width.div_ceil(across), self.height.div_ceil(down)];
@@ -186,7 +190,7 @@ impl Environment {
                 sum[3] += weight;
             }
         }
-        // Where the counts do not divide, the last cells are narrower, and that is left out of account.
+        // If the counts do not divide, the last cells are narrower; pictures ignore that.
         let texels = sums.iter().map(|[r, g, b, weight]| [r, g, b].map(|x| (x / weight) as f32)).collect();
         Self { width: columns, height: rows, texels, rotation: self.rotation }
     }

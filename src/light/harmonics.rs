@@ -57,50 +57,49 @@ pub fn cosine() -> [f64; 9] {
     [a, b, b, b, c, c, c, c, c]
 }
 
-/// The coefficients convolved with the clamped cosine: those of E.
+/// Convolves coefficients of L with the clamped cosine, which gives those of E.
 pub fn convolved(coefficients: &Coefficients) -> Coefficients {
     let cosine = cosine();
     std::array::from_fn(|k| coefficients[k].map(|x| x * cosine[k]))
 }
 
-/// Σ of coefficients times the basis: L from a direction, or E of a normal if they are convolved.
+/// Sums coefficients times the basis: L from a direction, or E of a normal if they are convolved.
 pub fn evaluate(coefficients: &Coefficients, direction: [f64; 3]) -> [f64; 3] {
     let basis = basis(direction);
     std::array::from_fn(|c| (0..9).map(|k| coefficients[k][c] * basis[k]).sum())
 }
 
-/// The coefficients of a light's radiance, by the CPU.
+/// Computes the coefficients of a light's radiance on the CPU.
 pub fn coefficients(light: &Light) -> Coefficients {
     match light {
-        Light::Constant(radiance) => {
-            of_sky(&Sky { zenith: *radiance, horizon: *radiance, ground: *radiance })
-        }
-        Light::Directional { direction, irradiance } => {
-            let basis = basis(*direction);
-            basis.map(|y| irradiance.map(|e| e * y))
+        Light::Constant(radiance) => sky_coefficients(&Sky::uniform(*radiance)),
+        Light::Directional(sun) => {
+            let basis = basis(sun.direction());
+            basis.map(|y| sun.irradiance().map(|e| e * y))
         }
         Light::Disk(disk) => {
             // Funk & Hecke: of a function about c, Lₖ = 2π Yₖ(c) ∫₀^σ L Pₗ(cos t) sin t dt, which is in closed form.
-            let (sin, cos) = disk.radius.sin_cos();
-            let one_minus_cos = 2.0 * (0.5 * disk.radius).sin().powi(2);
+            let (sin, cos) = disk.radius().sin_cos();
+            let one_minus_cos = 2.0 * (0.5 * disk.radius()).sin().powi(2);
             let bands = [one_minus_cos, 0.5 * sin * sin, 0.5 * cos * sin * sin];
-            let basis = basis(disk.direction);
+            let basis = basis(disk.direction());
             std::array::from_fn(|k| {
                 let band = bands[[0, 1, 1, 1, 2, 2, 2, 2, 2][k]];
-                disk.radiance.map(|l| l * 2.0 * PI * band * basis[k])
+                disk.radiance().map(|l| l * 2.0 * PI * band * basis[k])
             })
         }
-        Light::Sky(sky) => of_sky(sky),
+        Light::Sky(sky) => sky_coefficients(sky),
         Light::Map(map) => Factors::new(map).sum(),
     }
 }
 
-/// Of z alone, so only m = 0: ∫ over z ∈ [0, 1] of a + (b − a) z, and of the ground below.
-fn of_sky(sky: &Sky) -> Coefficients {
+/// Integrates a gradient. It depends on z alone, so only m = 0 remains: ∫ over z ∈ [0, 1] of a + (b − a) z, and of the
+/// ground below.
+fn sky_coefficients(sky: &Sky) -> Coefficients {
     let [y0, y1, _, y20, _] = normalisation();
     let mut coefficients = [[0.0; 3]; 9];
     (0..3).for_each(|c| {
-        let (a, b, g) = (sky.horizon[c], sky.zenith[c] - sky.horizon[c], sky.ground[c]);
+        let (a, b, g) = (sky.horizon()[c], sky.zenith()[c] - sky.horizon()[c], sky.ground()[c]);
         coefficients[0][c] = 2.0 * PI * y0 * (a + 0.5 * b + g);
         coefficients[2][c] = 2.0 * PI * y1 * (0.5 * a + b / 3.0 - 0.5 * g);
         coefficients[6][c] = 2.0 * PI * y20 * 0.25 * b;

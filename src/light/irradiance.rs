@@ -34,17 +34,17 @@ const TINY: f64 = 1e-30;
 /// Gauss–Legendre's two nodes on [−1, 1] are ± this, of weight 1.
 const NODE: f64 = 0.577_350_269_189_625_8;
 
-/// E(n) of any light but a map, in closed form.
+/// Computes E(n) in closed form; `None` for a map, which has none.
 pub fn in_closed_form(light: &Light, normal: [f64; 3]) -> Option<[f64; 3]> {
     match light {
-        Light::Constant(radiance) => Some(radiance.map(|l| PI * l)),
-        Light::Directional { direction, irradiance } => {
-            let cos = dot(normal, *direction).max(0.0);
-            Some(irradiance.map(|e| e * cos))
+        Light::Constant(radiance) => Some(radiance.rgb().map(|l| PI * l)),
+        Light::Directional(sun) => {
+            let cos = dot(normal, sun.direction()).max(0.0);
+            Some(sun.irradiance().map(|e| e * cos))
         }
         Light::Disk(disk) => {
             let factor = disk.form_factor(normal);
-            Some(disk.radiance.map(|l| l * factor))
+            Some(disk.radiance().map(|l| l * factor))
         }
         Light::Sky(sky) => Some(sky.irradiance(normal)),
         Light::Map(_) => None,

@@ -1,4 +1,4 @@
-//! Incident light, and what comes of it: irradiance, exitant radiance, radiosity.
+//! Incident light and the irradiance, exitant radiance and radiosity under it.
 //!
 //! # Conventions
 //!
@@ -28,23 +28,16 @@ mod sky;
 
 pub use environment::{Clamped, Environment, MAX_TEXELS};
 #[cfg(feature = "files")]
-pub use read::read;
-pub use sky::{Disk, Sky};
+pub use read::{InvalidTexels, read};
+pub use sky::{Directional, Disk, Radiance, Sky};
 
-use crate::base::error::Result;
-
-/// Light that comes from everywhere else, far away: the same at every point of a surface.
+/// Distant incident light: the same at every point of a surface.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Light {
-    /// The same radiance from everywhere.
-    Constant([f64; 3]),
-    /// From one direction, as of a star: a delta, so it has an irradiance and no radiance.
-    Directional {
-        /// Towards the light, unit.
-        direction: [f64; 3],
-        /// E of a surface that faces it, W m⁻².
-        irradiance: [f64; 3],
-    },
+    /// The same radiance from all directions.
+    Constant(Radiance),
+    /// Light from one direction.
+    Directional(Directional),
     /// A disk or a sphere of uniform radiance.
     Disk(Disk),
     /// A gradient from the zenith to the horizon, and a ground.
@@ -54,47 +47,30 @@ pub enum Light {
 }
 
 impl Light {
-    /// L from a direction, unit, in the world; of a directional light 0, as it has none.
+    /// Returns L from a direction of the world, a unit vector. A directional light has no radiance: 0.
     pub fn radiance(&self, direction: [f64; 3]) -> [f64; 3] {
         match self {
-            Self::Constant(radiance) => *radiance,
-            Self::Directional { .. } => [0.0; 3],
+            Self::Constant(radiance) => radiance.rgb(),
+            Self::Directional(_) => [0.0; 3],
             Self::Disk(disk) => disk.radiance_from(direction),
             Self::Sky(sky) => sky.radiance_from(direction),
             Self::Map(map) => map.radiance(direction),
         }
     }
 
-    /// A few words for people.
+    /// Describes the light in a few words.
     pub fn summary(&self) -> String {
         match self {
             Self::Constant(_) => "constant".into(),
-            Self::Directional { .. } => "directional".into(),
-            Self::Disk(disk) => format!("disk of {:.4}° half angle", disk.radius.to_degrees()),
+            Self::Directional(_) => "directional".into(),
+            Self::Disk(disk) => format!("disk of {:.4}° half angle", disk.radius().to_degrees()),
             Self::Sky(_) => "sky gradient".into(),
             Self::Map(map) => format!("map of {} × {}", map.width(), map.height()),
         }
     }
-
-    /// Refuses what is no light.
-    ///
-    /// # Errors
-    /// When a radiance is negative or not finite, or a direction is not unit.
-    pub fn check(&self) -> Result<()> {
-        match self {
-            Self::Constant(radiance) => sky::check_radiance("constant", radiance),
-            Self::Directional { direction, irradiance } => {
-                sky::check_direction(direction)?;
-                sky::check_radiance("directional", irradiance)
-            }
-            Self::Disk(disk) => disk.check(),
-            Self::Sky(sky) => sky.check(),
-            Self::Map(_) => Ok(()),
-        }
-    }
 }
 
-/// The unit vector at (θ, φ), rad.
+/// Returns the unit vector at (θ, φ), rad.
 pub fn direction(theta: f64, phi: f64) -> [f64; 3] {
     let ((st, ct), (sp, cp)) = (theta.sin_cos(), phi.sin_cos());
     [st * cp, st * sp, ct]
@@ -112,7 +88,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// That of a normal n(θn, φn), rad: tangent along ∂n/∂θn, bitangent along ∂n/∂φn.
+    /// Builds the frame of a normal n(θn, φn), rad: tangent along ∂n/∂θn, bitangent along ∂n/∂φn.
     pub fn new(theta: f64, phi: f64) -> Self {
         let ((st, ct), (sp, cp)) = (theta.sin_cos(), phi.sin_cos());
         Self { axes: [[ct * cp, ct * sp, -st], [-sp, cp, 0.0], [st * cp, st * sp, ct]] }
@@ -123,19 +99,19 @@ impl Frame {
         self.axes[2]
     }
 
-    /// A vector of the world in this frame.
+    /// Transforms a vector from the world to this frame.
     pub fn to_local(&self, world: [f64; 3]) -> [f64; 3] {
         self.axes.map(|axis| dot(axis, world))
     }
 
-    /// A vector of this frame in the world.
+    /// Transforms a vector from this frame to the world.
     pub fn to_world(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let [t, b, n] = self.axes;
         std::array::from_fn(|k| x * t[k] + y * b[k] + z * n[k])
     }
 }
 
-/// (θ, φ) of a vector; of the zenith φ = 0.
+/// Returns (θ, φ) of a vector; φ = 0 for the zenith.
 pub(crate) fn angles([x, y, z]: [f64; 3]) -> (f64, f64) {
     (x.hypot(y).atan2(z), y.atan2(x))
 }

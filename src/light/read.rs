@@ -10,27 +10,35 @@ use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 
-/// The largest file that is opened: what 2²⁵ texels take uncompressed, and as much again.
+/// The largest file that is opened: twice the size of 2²⁵ uncompressed texels.
 const MAX_BYTES: u64 = 1 << 30;
 
 /// OpenEXR, "OpenEXR File Layout": the magic number.
 const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
-/// Reads a map of latitude and longitude, `.exr` or `.hdr`, by what is in it and not by its name. Texels that are no
-/// radiance (negative, infinite, NaN) are refused, or with `clamp` mended and counted.
+/// What to do with a map that has texels which are no radiance: negative, infinite or NaN.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InvalidTexels<'a> {
+    /// Refuse the map. The message offers to correct it, or this remedy of the caller's: "clamp it".
+    Refuse {
+        /// The end of "mend the map, or …".
+        remedy: &'a str,
+    },
+    /// Replace them as [`Environment::clamped`] does, and count them.
+    Clamp,
+}
+
+/// Reads an environment map in latitude and longitude. Its first bytes, not its name, tell OpenEXR from Radiance HDR.
 ///
 /// # Errors
 /// When the file is not such a map, is cut short, has too many texels, or texels that are no radiance.
-pub fn read(path: &Path, clamp: bool) -> Result<(Environment, Clamped)> {
+pub fn read(path: &Path, invalid: InvalidTexels) -> Result<(Environment, Clamped)> {
     read_texels(path)
-        .and_then(|(width, height, texels)| {
-            if clamp {
-                return Environment::clamped(width, height, texels);
-            }
-            match Environment::new(width, height, texels) {
-                Ok(map) => Ok((map, Clamped::default())),
-                Err(Error::Input(why)) => Err(Error::Input(why.replace("or clamp it", "or give --clamp"))),
-                Err(error) => Err(error),
+        .and_then(|(width, height, texels)| match invalid {
+            InvalidTexels::Clamp => Environment::clamped(width, height, texels),
+            InvalidTexels::Refuse { remedy } => {
+                let map = Environment::checked(width, height, texels, remedy)?;
+                Ok((map, Clamped::default()))
             }
         })
         .map_err(|error| error.at(path.display()))
@@ -62,7 +70,7 @@ fn read_exr(mut file: BufReader<File>) -> Result<Texels> {
             "not a whole OpenEXR file ({why}); write the map again as scanlines with R, G and B"
         ))
     };
-    // Its size, before anything is reserved for it.
+    // The size is checked before memory is reserved for it.
     let headers = MetaData::read_from_buffered(&mut file, false).map_err(fault)?.headers;
     if let Some(size) = headers.first().map(|header| header.layer_size) {
         check_size(size.width(), size.height())?;

@@ -104,7 +104,10 @@ pub struct Selection {
     pub tolerance: Option<f64>,
 }
 
-/// Resolution of the tables that nobody asked for by name.
+/// Why a model that the scene does not use is left out.
+pub const UNUSED: &str = "nothing in the scene uses it";
+
+/// Resolution of the default tables.
 const ROUGHNESS: usize = 32;
 const MU: usize = 64;
 const THETA: usize = 64;
@@ -179,7 +182,7 @@ impl Plan {
         plan.describe(&materials)?;
         for model in MODELS {
             if !plan.bases.iter().any(|basis| basis.model == model.name) {
-                plan.leave_out(model.name, "nothing in the scene uses it");
+                plan.leave_out(model.name, UNUSED);
             }
         }
         if plan.tables.is_empty() {

@@ -1,4 +1,4 @@
-//! Recipes: materials and tables written by hand, in TOML. The README documents the format.
+//! Recipes: materials and tables written by hand, in TOML. docs/recipes.md documents the format.
 
 mod disney;
 mod document;

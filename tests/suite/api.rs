@@ -167,6 +167,31 @@ fn an_engines_device_does_what_ours_does() {
     assert!(matches!(failed, Err(gonio::Error::Device(_))), "{failed:?}");
 }
 
+/// Radiance and irradiance are finite and not negative, directions are unit vectors.
+#[test]
+fn a_light_that_is_none_cannot_be_built() {
+    use gonio::light::{Directional, Disk, Radiance, Sky};
+    const UP: [f64; 3] = [0.0, 0.0, 1.0];
+    const WHITE: [f64; 3] = [1.0; 3];
+    for wrong in [[-1.0, 0.0, 0.0], [0.0, f64::NAN, 0.0], [0.0, 0.0, f64::INFINITY]] {
+        refused(Radiance::new(wrong), "give finite numbers from 0 up");
+        refused(Directional::new(UP, wrong), "give finite numbers from 0 up");
+        refused(Disk::new(UP, 0.1, wrong), "give finite numbers from 0 up");
+        refused(Sky::new(wrong, WHITE, WHITE), "give finite numbers from 0 up");
+        refused(Sky::new(WHITE, wrong, WHITE), "give finite numbers from 0 up");
+        refused(Sky::new(WHITE, WHITE, wrong), "give finite numbers from 0 up");
+    }
+    for wrong in [[0.0; 3], [0.0, 0.0, 2.0], [f64::NAN, 0.0, 1.0]] {
+        refused(Directional::new(wrong, WHITE), "give a unit vector");
+        refused(Disk::new(wrong, 0.1, WHITE), "give a unit vector");
+    }
+    for wrong in [0.0, -0.1, 2.0, f64::NAN] {
+        refused(Disk::new(UP, wrong, WHITE), "outside (0, π/2]");
+    }
+    assert_eq!(Disk::new(UP, 0.1, WHITE).unwrap().radius(), 0.1);
+    assert_eq!(Sky::new(WHITE, [0.5; 3], [0.0; 3]).unwrap().horizon(), [0.5; 3]);
+}
+
 /// A device as an engine opens it: with no feature and no handler of gonio's.
 fn engine() -> Option<(wgpu::Device, wgpu::Queue)> {
     let wanted = adapters().into_iter().next()?;

@@ -446,6 +446,24 @@ fn one_pair_is_taken_apart() {
     assert!(one(&["--phi-e=3.141593"]).contains("δφ = 0.000000346"), "what is not 0 is shown");
 }
 
+/// Anisotropic models are evaluated at all four angles. A turn by 90° exchanges αx and αy.
+#[test]
+fn one_pair_of_an_anisotropic_model() {
+    let value = |alpha: &str, phi_i: &str, phi_e: &str| {
+        let angles = ["--theta-i=0.5", "--theta-e=0.8", phi_i, phi_e, "--device=cpu", "--json"];
+        let output = gonio(&[&["--model=ggx", "--set=f0=1", alpha][..], &angles].concat());
+        let json: serde_json::Value =
+            serde_json::from_slice(&output.stdout).unwrap_or_else(|why| panic!("{why}: {}", error(&output)));
+        assert!(json["relative_difference"].as_f64().unwrap() < 1e-6, "{json}");
+        json["value"][0].as_f64().unwrap()
+    };
+    let along = value("--set=alpha=[0.1,0.4]", "--phi-i=0", "--phi-e=180deg");
+    let across = value("--set=alpha=[0.1,0.4]", "--phi-i=90deg", "--phi-e=270deg");
+    let exchanged = value("--set=alpha=[0.4,0.1]", "--phi-i=-90deg", "--phi-e=90deg");
+    assert!((across / along - 1.0).abs() > 0.1, "{along} {across}");
+    assert!((exchanged / along - 1.0).abs() < 1e-6, "{along} {exchanged}");
+}
+
 /// Terms of a microfacet model by the words of recipes. By hand, retro-reflection at normal incidence with
 /// α = 0.1: f = D/4, D = 1/(πα²), as G2 = F = 1.
 #[test]

@@ -17,7 +17,9 @@ use gonio::light::bake::{Order, lobes_of};
 use gonio::light::exitant::{Integrated, View, prefiltered, radiance, radiosity, split_sum};
 use gonio::light::harmonics::{coefficients, convolved, evaluate};
 use gonio::light::irradiance::in_closed_form;
-use gonio::light::{Disk, Environment, Frame, Light, Sky, direction, read};
+use gonio::light::{
+    Directional, Disk, Environment, Frame, InvalidTexels, Light, Radiance, Sky, direction, read,
+};
 use gonio::model::compensation::Factor;
 use gonio::model::lobe::Lobe;
 use gonio::reference::{Parameters, Setting, light as reference};
@@ -28,6 +30,8 @@ use gonio::table::axis::{Axis, Variable};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+
+const REFUSE: InvalidTexels = InvalidTexels::Refuse { remedy: "give --clamp" };
 
 fn close(a: f64, b: f64, relative: f64) {
     assert!((a - b).abs() <= relative * b.abs(), "{a} is not {b} to {relative:e}");
@@ -103,7 +107,7 @@ fn le(
 /// E = πL, whatever the normal.
 #[test]
 fn a_constant_light_gives_pi() {
-    let light = Light::Constant([1.0, 2.0, 0.5]);
+    let light = Light::Constant(Radiance::new([1.0, 2.0, 0.5]).unwrap());
     for normal in normals() {
         let e = in_closed_form(&light, normal).unwrap();
         close3(e, [PI, 2.0 * PI, 0.5 * PI], 1e-15);
@@ -125,7 +129,7 @@ fn a_constant_light_gives_pi() {
 fn a_disk_is_in_closed_form() {
     for sigma in [1e-4, 4.65e-3, 0.3, 1.2] {
         for theta in [0.0, 0.2, 0.8, 1.3, 1.5, FRAC_PI_2, 1.7, 2.5] {
-            let disk = Disk { direction: direction(0.9, 2.0), radius: sigma, radiance: [3.0; 3] };
+            let disk = Disk::new(direction(0.9, 2.0), sigma, [3.0; 3]).unwrap();
             let light = Light::Disk(disk);
             let towards = Frame::new(0.9, 2.0).to_world(direction(theta, 0.7));
             let e = in_closed_form(&light, towards).unwrap()[0];
@@ -142,7 +146,7 @@ fn a_disk_is_in_closed_form() {
 
 #[test]
 fn a_sky_is_in_closed_form() {
-    let sky = Sky { zenith: [2.0, 1.0, 0.5], horizon: [0.5, 3.0, 0.5], ground: [0.1, 0.2, 0.7] };
+    let sky = Sky::new([2.0, 1.0, 0.5], [0.5, 3.0, 0.5], [0.1, 0.2, 0.7]).unwrap();
     for normal in normals() {
         let e = in_closed_form(&Light::Sky(sky), normal).unwrap();
         close3(e, reference::irradiance(&Light::Sky(sky).to_reference().unwrap(), normal), 1e-9);
@@ -213,7 +217,7 @@ fn the_kernel_is_portable() {
 #[test]
 #[ignore = "needs the sample data: set GONIO_DATA, see CONTRIBUTING.md"]
 fn sample_data_light_as_the_reference_says() {
-    let (map, _) = read(&sample_data("env/museum.exr"), false).unwrap();
+    let (map, _) = read(&sample_data("env/museum.exr"), REFUSE).unwrap();
     assert_eq!((map.width(), map.height()), (512, 256));
     let light = Light::Map(map);
     let order = order(device(), &light, Check::Sample(256));
@@ -233,7 +237,7 @@ fn sample_data_light_as_the_reference_says() {
 
 #[test]
 fn harmonics_of_a_direction_miss_by_what_truncation_says() {
-    let sun = Light::Directional { direction: direction(0.7, 2.0), irradiance: [1.0; 3] };
+    let sun = Light::Directional(Directional::new(direction(0.7, 2.0), [1.0; 3]).unwrap());
     let e = convolved(&coefficients(&sun));
     // At x = cos θ the three bands are ¼ + x/2 + (5/32)(3x² − 1).
     for theta in [0.0f64, 0.5, FRAC_PI_2, 2.0, PI] {
@@ -248,9 +252,11 @@ fn harmonics_of_a_direction_miss_by_what_truncation_says() {
 /// A map of what a disk, a sky or a constant is has their coefficients, as far as its texels go.
 #[test]
 fn harmonics_of_a_map_are_those_of_what_it_shows() {
-    let sky = Sky { zenith: [2.0, 1.0, 0.5], horizon: [0.5; 3], ground: [0.1; 3] };
-    let disk = Disk { direction: direction(1.0, 2.5), radius: 0.6, radiance: [2.0; 3] };
-    for light in [Light::Sky(sky), Light::Disk(disk), Light::Constant([1.0, 0.0, 3.0])] {
+    let sky = Sky::new([2.0, 1.0, 0.5], [0.5; 3], [0.1; 3]).unwrap();
+    let disk = Disk::new(direction(1.0, 2.5), 0.6, [2.0; 3]).unwrap();
+    for light in
+        [Light::Sky(sky), Light::Disk(disk), Light::Constant(Radiance::new([1.0, 0.0, 3.0]).unwrap())]
+    {
         let (width, height) = (512, 256);
         let blank = Environment::new(width, height, vec![[0.0; 3]; width * height]).unwrap();
         let texels = (0..width * height).map(|k| {
@@ -279,7 +285,7 @@ fn lambert_sends_back_its_share_of_the_irradiance() {
         close3(lit[0].value, [0.8, 0.4, 0.1].map(|a: f64| a / PI).zip3(e), 1e-6);
     }
     // Of lights in closed form it is exact.
-    let light = Light::Disk(Disk { direction: direction(0.3, 1.0), radius: 0.2, radiance: [5.0; 3] });
+    let light = Light::Disk(Disk::new(direction(0.3, 1.0), 0.2, [5.0; 3]).unwrap());
     let lit = le(device(), &lobes("model = \"lambert\", albedo = 0.5"), &light, &[view], 1e-5);
     let e = in_closed_form(&light, frame.normal()).unwrap();
     close3(lit[0].value, e.map(|e| 0.5 * e / PI), 1e-6);
@@ -328,7 +334,7 @@ fn equation_8_light_and_eye_may_change_places() {
         let lobes = lobes(lobe);
         let f = |i: (f64, f64), e: (f64, f64)| {
             let light =
-                Light::Directional { direction: frame.to_world(direction(i.0, i.1)), irradiance: [1.0; 3] };
+                Light::Directional(Directional::new(frame.to_world(direction(i.0, i.1)), [1.0; 3]).unwrap());
             let view = View { frame, theta_e: e.0, phi_e: e.1 };
             le(device(), &lobes, &light, &[view], 1e-4)[0].value.map(|l| l / i.0.cos())
         };
@@ -398,7 +404,7 @@ fn equation_11_outgoing_radiance() {
 fn a_smooth_coat_reflects_its_fresnel_term() {
     let lobe = Lobe::new(model("ggx-smith-correlated-none"), Some(0.0), vec![[1.0, 0.0]; 3]).unwrap();
     let coat = lobe.with_factors(vec![Factor::Coat { weight: 0.5 }]);
-    let light = Light::Constant([2.0; 3]);
+    let light = Light::Constant(Radiance::new([2.0; 3]).unwrap());
     for theta_e in [0.0f64, 0.8, 1.4] {
         let view = View { frame: Frame::new(0.5, 1.0), theta_e, phi_e: 0.3 };
         let reflected = 0.5 * (0.04 + 0.96 * (1.0 - theta_e.cos()).powi(5));
@@ -413,7 +419,7 @@ fn equation_12_radiosity() {
     let text = "model = \"ggx\", roughness = 0.8, f0 = 0.6";
     let (one, lobes) = (scene(text), lobes(text));
     let frame = Frame::new(0.0, 0.0);
-    let light = Light::Sky(Sky { zenith: [2.0; 3], horizon: [0.5; 3], ground: [0.0; 3] });
+    let light = Light::Sky(Sky::new([2.0; 3], [0.5; 3], [0.0; 3]).unwrap());
     let m = radiosity(device(), (&one, "m"), &light, &[frame], 1e-4, &Unobserved).unwrap()[0].value[0];
     // About the zenith Le is the same for all φe: M = 2π ∫ Le μ dμ.
     let rule = gauss_legendre(12);
@@ -423,7 +429,7 @@ fn equation_12_radiosity() {
     let sum: f64 = rule.iter().zip(&found).map(|(node, le)| node.weight * node.x * le.value[0]).sum();
     close(m, TAU * sum, 3e-4);
 
-    let uniform = Light::Constant([2.0; 3]);
+    let uniform = Light::Constant(Radiance::new([2.0; 3]).unwrap());
     let m = radiosity(device(), (&one, "m"), &uniform, &[frame], 1e-4, &Unobserved).unwrap()[0].value[0];
     let e = in_closed_form(&uniform, [0.0, 0.0, 1.0]).unwrap()[0];
     let ggx = &lobes[0];
@@ -435,8 +441,8 @@ fn equation_12_radiosity() {
 
 /// The lights that are no maps.
 fn smooth_lights() -> [Light; 2] {
-    let sky = Sky { zenith: [1.0, 0.5, 2.0], horizon: [2.0, 3.0, 0.1], ground: [0.3, 0.2, 0.4] };
-    let disk = Disk { direction: direction(1.3, PI), radius: 0.4, radiance: [1.0, 2.0, 0.5] };
+    let sky = Sky::new([1.0, 0.5, 2.0], [2.0, 3.0, 0.1], [0.3, 0.2, 0.4]).unwrap();
+    let disk = Disk::new(direction(1.3, PI), 0.4, [1.0, 2.0, 0.5]).unwrap();
     [Light::Sky(sky), Light::Disk(disk)]
 }
 
@@ -517,7 +523,7 @@ fn the_split_sum_is_exact_where_it_should_be() {
         |light: &Light, view| split_sum(device(), &lobes, light, &[view], 1e-4, &Unobserved).unwrap()[0];
     let exact = |light: &Light, view| le(device(), &lobes, light, &[view], 1e-4)[0].value;
     close3(split(&map, straight), exact(&map, straight), 5e-4);
-    let white = Light::Constant([1.0; 3]);
+    let white = Light::Constant(Radiance::new([1.0; 3]).unwrap());
     close3(split(&white, slanted), exact(&white, slanted), 5e-4);
     // And an approximation elsewhere.
     let [a, b] = [split(&map, slanted), exact(&map, slanted)];
@@ -528,7 +534,7 @@ fn the_split_sum_is_exact_where_it_should_be() {
 
 /// An EXR file of a map: a table over normals is one.
 fn exr(dir: &Path, name: &str, width: usize, height: usize, texels: Vec<f32>) -> PathBuf {
-    let light = Light::Constant([1.0; 3]);
+    let light = Light::Constant(Radiance::new([1.0; 3]).unwrap());
     let axes = [nodes(Variable::ThetaN, height, [0.0, PI]), nodes(Variable::PhiN, width, [0.0, TAU])];
     let table =
         order(&Evaluator::Cpu, &light, Check::Sample(0)).irradiance(axes, &mut Timings::default()).unwrap();
@@ -543,7 +549,7 @@ fn hostile_maps_are_refused_with_their_reason() {
     let dir = tempfile::tempdir().unwrap();
     let mut texels = vec![0.5f32; 16 * 8 * 3];
     let good = exr(dir.path(), "good.exr", 16, 8, texels.clone());
-    assert_eq!(read(&good, false).unwrap().0.texel(7, 15), [0.5; 3]);
+    assert_eq!(read(&good, REFUSE).unwrap().0.texel(7, 15), [0.5; 3]);
 
     let bytes = std::fs::read(&good).unwrap();
     let write = |name: &str, bytes: &[u8]| {
@@ -552,7 +558,7 @@ fn hostile_maps_are_refused_with_their_reason() {
         path
     };
     let refused = |path: &Path, what: &[&str]| {
-        let why = read(path, false).unwrap_err().to_string();
+        let why = read(path, REFUSE).unwrap_err().to_string();
         assert!(what.iter().all(|what| why.contains(what)), "{why}");
         assert!(why.contains(path.file_name().unwrap().to_str().unwrap()), "{why}");
     };
@@ -573,7 +579,7 @@ fn hostile_maps_are_refused_with_their_reason() {
     texels[(4 * 16 + 5) * 3 + 2] = f32::INFINITY;
     let bad = exr(dir.path(), "bad.exr", 16, 8, texels);
     refused(&bad, &["row 3, column 5: G is NaN", "2 of 128", "--clamp"]);
-    let (map, clamped) = read(&bad, true).unwrap();
+    let (map, clamped) = read(&bad, InvalidTexels::Clamp).unwrap();
     assert_eq!((clamped.texels, map.texel(3, 5), map.texel(4, 5)), (2, [0.5, 0.0, 0.5], [0.5; 3]));
 }
 
@@ -585,7 +591,7 @@ fn radiance_hdr_is_read() {
     bytes.extend([128, 64, 32, 129, 200, 100, 50, 140]);
     let path = dir.path().join("two.hdr");
     std::fs::write(&path, bytes).unwrap();
-    let (map, _) = read(&path, false).unwrap();
+    let (map, _) = read(&path, REFUSE).unwrap();
     assert_eq!((map.width(), map.height()), (2, 1));
     for (texel, truth) in [(map.texel(0, 0), [1.0, 0.5, 0.25]), (map.texel(0, 1), [3200.0, 1600.0, 800.0])] {
         for (a, b) in texel.into_iter().zip(truth) {

@@ -1,5 +1,5 @@
-//! Pictures of a check: ρ_dh against θi for several parameters, and the relative error against the reference
-//! over θi and θe, at the parameters and the δφ of its worst input.
+//! Draws a check: ρ_dh over θi for several parameters, and the relative error against the reference over θi and
+//! θe, at the parameters and the δφ of its worst input.
 
 use crate::base::angles::Angles;
 use crate::base::error::Result;
@@ -19,14 +19,14 @@ const LINES: usize = 6;
 const ANGLES: usize = 181;
 const SIDE: usize = 181;
 
-/// The quantities of the pictures, by the names that their labels have.
+/// Quantities whose names are the labels of the pictures.
 static ALBEDO: Quantity = Quantity { name: "ρ_dh", ..RHO_DH };
 static DEVIATION: Quantity =
     Quantity {
         name: "error", unit: "1", summary: "|f − reference| / reference", is_promised: false, ..BRDF
     };
 
-/// Writes `STEM.rho_dh.png`, and `STEM.error.png` where there are values; returns which.
+/// Writes `STEM.rho_dh.png`, and `STEM.error.png` if the subject has values; returns their paths.
 pub fn write(dir: &Path, stem: &str, subject: &mut dyn Subject, report: &Report) -> Result<Vec<PathBuf>> {
     let tables = [furnace(subject, report)?, errors(subject, report)?];
     let mut files = Vec::new();
@@ -39,8 +39,8 @@ pub fn write(dir: &Path, stem: &str, subject: &mut dyn Subject, report: &Report)
     Ok(files.into_iter().map(|(name, _)| dir.join(name)).collect())
 }
 
-/// A line for each of some values of the first parameter that has a range, the others as at the largest
-/// ρ_dh; for each of R, G and B where none has.
+/// Tabulates ρ_dh over θi, a line for each of `LINES` values of the first parameter that has a range, with the
+/// others as at the largest ρ_dh. If none has a range: a line for each of R, G and B.
 fn furnace(subject: &mut dyn Subject, report: &Report) -> Result<Option<Table>> {
     let parameters = subject.integral_parameters().to_vec();
     let Some(base) = setting(report, "energy") else { return Ok(None) };
@@ -66,14 +66,14 @@ fn furnace(subject: &mut dyn Subject, report: &Report) -> Result<Option<Table>> 
             rho.chunks_exact(channels).map(|rho| rho.iter().copied().fold(0.0, f64::max)).collect();
         let columns = theta.len();
         let by_angle = (0..columns).flat_map(|j| (0..settings.len()).map(move |k| k * columns + j));
-        (names, by_angle.map(|at| largest[at]).collect())
+        (names, by_angle.map(|index| largest[index]).collect())
     };
     let fixed = pinned(&parameters, &base, free);
     let name = free.map_or("furnace".into(), |k| format!("furnace, a line for each {}", parameters[k].name));
     Ok(Some(table(&name, &ALBEDO, report, vec![theta], lines, values, fixed, None)))
 }
 
-/// |f − reference| / reference, the largest of the channels.
+/// Tabulates |f − reference| / reference over θi and θe, the largest of the channels.
 fn errors(subject: &mut dyn Subject, report: &Report) -> Result<Option<Table>> {
     let Some(finding) = report.find("agreement") else { return Ok(None) };
     let (Some(input), Some(base)) = (&finding.input, setting(report, "agreement")) else { return Ok(None) };
@@ -98,7 +98,7 @@ fn errors(subject: &mut dyn Subject, report: &Report) -> Result<Option<Table>> {
     Ok(Some(table("agreement", &DEVIATION, report, axes, channel, errors, fixed, finding.deviation)))
 }
 
-/// The setting of a promise's worst input.
+/// Returns the parameters of a promise's worst input.
 fn setting(report: &Report, property: &str) -> Option<Vec<f64>> {
     let Finding { input, .. } = report.find(property)?;
     Some(input.as_ref()?.setting.iter().map(|&(_, value)| value).collect())
@@ -110,7 +110,7 @@ fn pinned(parameters: &[Parameter], setting: &[f64], but: Option<usize>) -> BTre
     all.filter(|(k, _)| Some(*k) != but).map(|(_, pair)| pair).collect()
 }
 
-#[allow(clippy::too_many_arguments)] // what a picture says
+#[allow(clippy::too_many_arguments)] // each is one label of the picture
 fn table(
     name: &str,
     quantity: &'static Quantity,
@@ -144,7 +144,8 @@ fn table(
     }
 }
 
-/// The value at u in [0, 1] of a parameter's range: even steps, of α in roughness, as lobes look.
+/// Interpolates a parameter's range at u in [0, 1]. α has even steps in roughness = √α, in which lobes change
+/// evenly.
 fn between(parameter: &Parameter, u: f64) -> f64 {
     let Parameter { ref name, low, high, .. } = *parameter;
     let value = match name.as_str() {
@@ -154,7 +155,7 @@ fn between(parameter: &Parameter, u: f64) -> f64 {
     value.clamp(low, high)
 }
 
-/// What fits a legend.
+/// Formats a number for a legend.
 fn short(value: f64) -> String {
     if value != 0.0 && value < 1e-3 { format!("{value:.0e}") } else { format!("{value:.3}") }
 }

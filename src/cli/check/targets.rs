@@ -1,4 +1,4 @@
-//! What `gonio check` checks of our own: a model, or every basis and material of a scene or recipe.
+//! The subjects of `gonio check`: a model, or every basis and material of a scene or recipe.
 
 use crate::bake::Evaluator;
 use crate::base::error::{Error, Result};
@@ -14,13 +14,13 @@ use crate::table::axis::Variable;
 use crate::verify::{Parameter, Sum};
 use std::path::Path;
 
-/// A subject, and the command that evaluates it, but for its parameters and directions.
+/// A subject, and the `gonio eval` command for it without parameters and directions.
 pub struct Target<'a> {
     pub subject: Sum<'a>,
     pub command: String,
 }
 
-/// `--model NAME` with `--set`: what is not set is checked over its whole range.
+/// Builds the subject of `--model NAME` with `--set`. Unset parameters are checked over their whole range.
 pub fn model<'a>(args: &Args, name: &str, evaluator: &'a Evaluator) -> Result<Target<'a>> {
     let mut model = model::find(name)?;
     let (mut fixed, mut ranges) = (Vec::new(), Vec::new());
@@ -33,7 +33,7 @@ pub fn model<'a>(args: &Args, name: &str, evaluator: &'a Evaluator) -> Result<Ta
             return Err(Error::input(format!("--set {set}: \"{key}\" is given twice")));
         }
         match value.split_once("..") {
-            // Terms have no numbers: the model's name tells them from here on.
+            // Terms have no range: from here on they are part of the model's name.
             None if key == "masking" => model = model.with_terms(Some(value), None)?,
             None if key == "fresnel" => model = model.with_terms(None, Some(value))?,
             None => fixed.push((key, value)),
@@ -59,7 +59,7 @@ pub fn model<'a>(args: &Args, name: &str, evaluator: &'a Evaluator) -> Result<Ta
     whole.extend(beside_the_shape(model)?.into_iter().filter(|parameter| !given(&parameter.name)));
     ranges.extend(whole);
 
-    // The recipe's own reader says what is wrong with a name or a value: at both ends of the ranges.
+    // The recipe's reader reports wrong names and values, at both ends of the ranges.
     let mut lobe = None;
     for end in [|p: &Parameter| p.low, |p: &Parameter| p.high] {
         let ranged: Vec<_> =
@@ -67,7 +67,7 @@ pub fn model<'a>(args: &Args, name: &str, evaluator: &'a Evaluator) -> Result<Ta
         let ranged = ranged.iter().map(|(key, value)| (*key, value.as_str()));
         let scene = subject::model(model.name, fixed.iter().copied().chain(ranged))?;
         let mut material = scene.materials[0].clone();
-        // The subject does it, at each of its settings.
+        // `Sum` compensates at each of its settings, so the lobe must not be compensated already.
         for lobe in &mut material.lobes {
             compensation = std::mem::take(&mut lobe.compensation);
         }
@@ -81,7 +81,7 @@ pub fn model<'a>(args: &Args, name: &str, evaluator: &'a Evaluator) -> Result<Ta
     Ok(Target { subject: Sum::compensated(evaluator, lobe, compensation, ranges)?, command })
 }
 
-/// Every basis, over all roughnesses that the scene gives it and all weights, and every material.
+/// Builds a subject for every basis, over the scene's range of roughness and all weights, and for every material.
 pub fn scene<'a>(
     path: &Path,
     scene: &'a Scene,
@@ -95,7 +95,7 @@ pub fn scene<'a>(
     let mut targets = Vec::new();
     if material.is_none() {
         for model in model::all() {
-            if let Some(range) = used(scene, model) {
+            if let Some(range) = roughness_range(scene, model) {
                 targets.push(basis(model, range, evaluator)?);
             }
         }
@@ -123,29 +123,29 @@ fn basis<'a>(model: &'static Model, roughness: [f64; 2], evaluator: &'a Evaluato
     Ok(Target { subject, command: format!("gonio eval --model {}", model.name) })
 }
 
-/// A model's own parameters and its components' weights, each over its whole range.
+/// Lists a model's parameters but roughness, and its components' weights, each over its whole range.
 fn beside_the_shape(model: &Model) -> Result<Vec<Parameter>> {
-    let own = model.parameters.iter().map(|parameter| (parameter.name, parameter.range));
+    let parameters = model.parameters.iter().map(|parameter| (parameter.name, parameter.range));
     let weights = model.components.iter().map(|component| (component.weight, [0.0, 1.0]));
-    own.chain(weights).map(|(name, [low, high])| Parameter::new(name, low, high)).collect()
+    parameters.chain(weights).map(|(name, [low, high])| Parameter::new(name, low, high)).collect()
 }
 
-/// The roughnesses that the scene's materials and tables give a model, if it uses it.
-fn used(scene: &Scene, model: &Model) -> Option<[f64; 2]> {
+/// Returns the range of roughness that the scene's materials and tables give a model, if they use it.
+fn roughness_range(scene: &Scene, model: &Model) -> Option<[f64; 2]> {
     let lobes = scene.materials.iter().flat_map(|m| &m.lobes).filter(|lobe| lobe.model == model.name);
     let range = |d: &Distribution| [d.min(), d.max()];
-    let of_lobes = lobes.map(|lobe| lobe.roughness.as_ref().map_or([1.0; 2], range));
-    let of_tables = scene.tables.iter().filter_map(|table| match &table.subject {
+    let lobe_ranges = lobes.map(|lobe| lobe.roughness.as_ref().map_or([1.0; 2], range));
+    let table_ranges = scene.tables.iter().filter_map(|table| match &table.subject {
         SubjectRequest::Basis { model: name, roughness, .. } if name == model.name => {
             let axis = table.axes.iter().find(|axis| axis.variable() == Variable::Roughness);
             Some(roughness.map(|r| [r; 2]).or(axis.map(|axis| axis.range())).unwrap_or([0.0, 1.0]))
         }
         _ => None,
     });
-    of_lobes.chain(of_tables).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+    lobe_ranges.chain(table_ranges).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
 }
 
-/// A word that a POSIX shell reads as it is.
+/// Quotes a word for a POSIX shell.
 pub(in crate::cli) fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=+,:%@".contains(c);
     if !word.is_empty() && word.chars().all(plain) {

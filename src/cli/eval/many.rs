@@ -1,4 +1,5 @@
-//! A list of pairs of directions, from file to file, piece by piece: memory does not grow with the list.
+//! Evaluates a list of pairs of directions, from file to file in pieces, so that memory does not grow with the
+//! list.
 
 use crate::bake::points::Points;
 use crate::bake::{Evaluator, Observer};
@@ -16,7 +17,7 @@ use std::path::Path;
 const PIECE: usize = 1 << 20;
 
 pub fn run(args: &Args, pairs: &Path, out: &Path) -> Result<()> {
-    // Of a list the lobes and channels alone matter.
+    // Only the plan's lobes and channels are used: the directions come from the list.
     let plan = subject(args, &Angles { theta_i: 0.0, phi_i: 0.0, theta_e: 0.0, phi_e: 0.0 })?;
     let mut list = Pairs::open(pairs)?;
     if let (Ok(from), Ok(to)) = (pairs.canonicalize(), out.canonicalize())
@@ -85,7 +86,7 @@ pub fn run(args: &Args, pairs: &Path, out: &Path) -> Result<()> {
     }
 }
 
-/// Where the time went.
+/// Seconds spent reading, evaluating and writing.
 #[derive(Default)]
 struct Seconds {
     read: f64,

@@ -1,4 +1,4 @@
-//! One pair of directions: f on the device, by the reference, and what it is made of.
+//! Evaluates one pair of directions: f on the device and by the reference, and its factors D, G2 and F.
 
 use crate::bake::Evaluator;
 use crate::bake::points::Points;
@@ -14,7 +14,7 @@ use crate::plan::TablePlan;
 use serde::Serialize;
 use serde_json::json;
 
-/// What a microfacet lobe is made of, by the reference.
+/// The factors of a microfacet lobe, by the reference.
 #[derive(Serialize)]
 struct Factors {
     model: &'static str,
@@ -37,10 +37,10 @@ pub fn run(args: &Args, angles: &Angles) -> Result<()> {
     let reference = check::reference(&plan, 0);
     let difference = relative_difference(&value, &reference);
     let factors: Vec<_> = plan.lobes().iter().filter_map(|lobe| factors(lobe, angles)).collect();
-    // As everywhere: f diverges where both directions graze.
+    // f diverges if both directions graze: all paths bound cos θ below by 2⁻²⁴.
     let mu_i = angles.theta_i.cos().max(MU_MIN);
     let f_cos: Vec<_> = value.iter().map(|&f| f64::from(f) * mu_i).collect();
-    // Less than an azimuth's last digit.
+    // δφ = φe − φi − π is exact to the last digit of an azimuth, about 1e-15: below that it is 0.
     let delta_phi = Some(angles.delta_phi()).filter(|d| d.abs() > 1e-15).unwrap_or(0.0);
     let precision = if matches!(evaluator, Evaluator::Cpu) { "f64" } else { "f32" };
 
@@ -73,11 +73,11 @@ pub fn run(args: &Args, angles: &Angles) -> Result<()> {
     Err(Error::Promise(format!("f({}) is not finite, or negative", plan.subject())))
 }
 
-/// The largest of the channels; NaN if any is.
+/// Returns the largest relative difference of the channels; NaN if one is NaN.
 fn relative_difference(value: &[f32], reference: &[f64]) -> f64 {
     let differences =
         value.iter().zip(reference).map(|(&f, r)| (f64::from(f) - r).abs() / r.max(VALUE_FLOOR));
-    differences.fold(0.0, |most, d| if most >= d { most } else { d })
+    differences.fold(0.0, |max, d| if max >= d { max } else { d })
 }
 
 fn factors(lobe: &Lobe, angles: &Angles) -> Option<Factors> {

@@ -9,7 +9,7 @@ use crate::lab::trade::{Cost, costs};
 use crate::model::Model;
 use serde_json::json;
 
-/// What each tolerance costs each model, measured on a device.
+/// Measures the evaluations and the error of each model at each tolerance.
 pub(super) fn run(
     models: &[&'static Model],
     tolerances: &[f64],
@@ -19,9 +19,7 @@ pub(super) fn run(
     let (evaluator, name) = Evaluator::choose(device)?;
     let say = |text: &str| print_beside(json, text);
     say(&format!("{HEADING}device{HEADING:#}  {name}"))?;
-    say(
-        "evaluations of the integrand for a texel, the arithmetic, and the largest error, to each tolerance",
-    )?;
+    say("for each tolerance: evaluations of the integrand for a texel, arithmetic, largest error")?;
     let tolerance = |t: &f64| format!("  {:>26}", format!("{t:e}"));
     let heads: String = tolerances.iter().map(tolerance).collect();
     say(&format!("{HEADING}  {:26}{:8}{heads}{HEADING:#}", "model", "quantity"))?;
@@ -30,8 +28,8 @@ pub(super) fn run(
     for model in models {
         watch.begin(model.name);
         let measured = costs(&evaluator, model, tolerances, &watch)?;
-        for of_quantity in measured.chunks(tolerances.len()) {
-            watch.hide(|| say(&line(of_quantity)))?;
+        for quantity in measured.chunks(tolerances.len()) {
+            watch.hide(|| say(&line(quantity)))?;
         }
         all.extend(measured);
     }
@@ -50,7 +48,7 @@ pub(super) fn run(
     }
 }
 
-/// A quantity of a model at each tolerance.
+/// Formats one quantity of a model at all tolerances.
 fn line(costs: &[Cost]) -> String {
     let cell = |cost: &Cost| {
         let mark = if cost.is_met() { ' ' } else { '!' };

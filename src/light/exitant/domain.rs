@@ -1,20 +1,20 @@
 //! Where a light comes from: cells of directions, in each of which L is smooth or a block of texels.
 
 use crate::light::exitant::nodes::NODE;
-use crate::light::{Disk, Environment, Frame, Light, Sky, angles};
+use crate::light::{Disk, Environment, Frame, Light, Radiance, Sky, angles};
 use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Where a light comes from, as latitudes and longitudes of a frame of its own.
+/// The directions that a light comes from, as latitudes and longitudes of the light's frame.
 pub(super) struct Domain<'a> {
-    kind: Kind<'a>,
+    shape: Shape<'a>,
     rows: usize,
     columns: usize,
     /// θ from 0 to here.
     end: f64,
 }
 
-enum Kind<'a> {
+enum Shape<'a> {
     Map(Cow<'a, Environment>),
     Sky(Sky),
     Disk(&'a Disk, Frame),
@@ -26,26 +26,26 @@ impl<'a> Domain<'a> {
 
     pub fn new(light: &'a Light) -> Self {
         let [rows, columns] = Self::BEGIN;
-        let sky = |sky| Self { kind: Kind::Sky(sky), rows, columns, end: PI };
+        let sky = |sky| Self { shape: Shape::Sky(sky), rows, columns, end: PI };
         match light {
-            Light::Constant(l) => sky(Sky { zenith: *l, horizon: *l, ground: *l }),
-            Light::Sky(own) => sky(*own),
+            Light::Constant(radiance) => sky(Sky::uniform(*radiance)),
+            Light::Sky(gradient) => sky(*gradient),
             Light::Disk(disk) => {
-                let (theta, phi) = angles(disk.direction);
+                let (theta, phi) = angles(disk.direction());
                 Self {
-                    kind: Kind::Disk(disk, Frame::new(theta, phi)),
+                    shape: Shape::Disk(disk, Frame::new(theta, phi)),
                     rows: 4,
                     columns: 16,
-                    end: disk.radius,
+                    end: disk.radius(),
                 }
             }
             Light::Map(map) => {
                 let map = map.at_least(columns, rows);
                 let (rows, columns) = (map.height(), map.width());
-                Self { kind: Kind::Map(map), rows, columns, end: PI }
+                Self { shape: Shape::Map(map), rows, columns, end: PI }
             }
-            // It has no extent.
-            Light::Directional { .. } => sky(Sky { zenith: [0.0; 3], horizon: [0.0; 3], ground: [0.0; 3] }),
+            // A delta has no extent; `refine` evaluates it by itself.
+            Light::Directional(_) => sky(Sky::uniform(Radiance::BLACK)),
         }
     }
 
@@ -92,38 +92,38 @@ impl<'a> Domain<'a> {
 
     /// A vector of the domain's frame in the world, or back.
     pub fn to_world(&self, v: [f64; 3]) -> [f64; 3] {
-        match &self.kind {
-            Kind::Map(map) => map.turn(v),
-            Kind::Sky(_) => v,
-            Kind::Disk(_, frame) => frame.to_world(v),
+        match &self.shape {
+            Shape::Map(map) => map.turn(v),
+            Shape::Sky(_) => v,
+            Shape::Disk(_, frame) => frame.to_world(v),
         }
     }
 
     pub fn to_domain(&self, v: [f64; 3]) -> [f64; 3] {
-        match &self.kind {
-            Kind::Map(map) => map.turn(v),
-            Kind::Sky(_) => v,
-            Kind::Disk(_, frame) => frame.to_local(v),
+        match &self.shape {
+            Shape::Map(map) => map.turn(v),
+            Shape::Sky(_) => v,
+            Shape::Disk(_, frame) => frame.to_local(v),
         }
     }
 
     /// L at a cosine of θ, in a cell where it is smooth.
     pub fn radiance(&self, cell: &Cell, cos: f64) -> [f64; 3] {
-        match &self.kind {
-            Kind::Map(map) => map.texel(cell.rows[0] as usize, cell.columns[0] as usize).map(f64::from),
+        match &self.shape {
+            Shape::Map(map) => map.texel(cell.rows[0] as usize, cell.columns[0] as usize).map(f64::from),
             // The middle decides: borders of cells lie on the horizon.
-            Kind::Sky(sky) if cell.theta[0] + cell.theta[1] > PI => sky.ground,
-            Kind::Sky(sky) => {
-                std::array::from_fn(|c| sky.horizon[c] + (sky.zenith[c] - sky.horizon[c]) * cos)
+            Shape::Sky(sky) if cell.theta[0] + cell.theta[1] > PI => sky.ground(),
+            Shape::Sky(sky) => {
+                std::array::from_fn(|c| sky.horizon()[c] + (sky.zenith()[c] - sky.horizon()[c]) * cos)
             }
-            Kind::Disk(disk, _) => disk.radiance,
+            Shape::Disk(disk, _) => disk.radiance(),
         }
     }
 
     /// L Δω of each texel of a block, as shares of its four nodes.
     pub fn shares(&self, cell: &Cell) -> [[f64; 3]; 4] {
         let mut shares = [[0.0; 3]; 4];
-        let Kind::Map(map) = &self.kind else { return shares };
+        let Shape::Map(map) = &self.shape else { return shares };
         let [rows, columns] = [cell.rows, cell.columns].map(|[a, b]| a as usize..b as usize);
         // The middle of texel k of n, in [−1, 1]; and the two linear functions that are 1 at one node and 0 at the other.
         let hats = |k: usize, n: usize| {

@@ -3,7 +3,7 @@
 use crate::bake::{Evaluator, Observer};
 use crate::base::error::Result;
 use crate::light::exitant::{View, irradiance_of, radiance};
-use crate::light::{Frame, Light, angles};
+use crate::light::{Frame, Light, Radiance, angles};
 use crate::model::lobe::Lobe;
 use std::f64::consts::PI;
 
@@ -29,7 +29,7 @@ pub fn prefiltered(
     let views: Vec<_> = directions.iter().map(along).collect();
     let lobes = std::slice::from_ref(&plain);
     let lit = radiance(evaluator, lobes, light, &views, tolerance, observer)?;
-    let white = Light::Constant([1.0; 3]);
+    let white = Light::Constant(Radiance::WHITE);
     let one = radiance(evaluator, lobes, &white, &views[..1.min(views.len())], tolerance, observer)?;
     let Some(whole) = one.first().map(|one| one.value) else { return Ok(Vec::new()) };
     Ok(lit.iter().map(|lit| std::array::from_fn(|c| lit.value[c] / whole[c])).collect())
@@ -49,7 +49,7 @@ pub fn split_sum(
     observer: &dyn Observer,
 ) -> Result<Vec<[f64; 3]>> {
     let mut all = vec![[0.0; 3]; views.len()];
-    let white = Light::Constant([1.0; 3]);
+    let white = Light::Constant(Radiance::WHITE);
     for lobe in lobes {
         // A and B hang on θe alone (and on φe where azimuths tell): each is integrated once.
         let mut own: Vec<View> = Vec::new();

@@ -28,13 +28,13 @@ pub fn radiosity(
 ) -> Result<Vec<Integrated>> {
     if scene.material(material)?.is_anisotropic() {
         return Err(Error::input(format!(
-            "{material}: radiosity of what tells azimuths from each other is not there; give equal α"
+            "{material}: anisotropic materials have no radiosity here; give equal α"
         )));
     }
     if let Light::Constant(radiance) = light {
         // ∫ ρ_dh cos θ dω = π ρ_hh.
         let rho = mean_albedo(evaluator, scene, material)?;
-        let value = std::array::from_fn(|c| PI * radiance[c] * rho[c]);
+        let value = std::array::from_fn(|c| PI * radiance.rgb()[c] * rho[c]);
         return Ok(vec![Integrated { value, error: 0.0 }; frames.len()]);
     }
     let albedo = Albedo::new(evaluator, scene, material)?;

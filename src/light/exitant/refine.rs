@@ -42,8 +42,8 @@ pub(super) fn integrate(
     tolerance: f64,
     observer: &dyn Observer,
 ) -> Result<Vec<Integrated>> {
-    if let Light::Directional { direction, irradiance } = light {
-        return directional(f, *direction, *irradiance, views);
+    if let Light::Directional(sun) = light {
+        return directional(f, sun.direction(), sun.irradiance(), views);
     }
     let domain = Domain::new(light);
     let cells = domain.cells();
