@@ -11,18 +11,17 @@ use crate::check::Check;
 use crate::cli::subject;
 use crate::cli::subject::key_value;
 use crate::cli::watch::Watch;
-use crate::cli::{HEADING, device_json, print_beside, print_json, warn};
-use crate::io::target::IDENTITY;
-use crate::io::{Format, Provenance, TableEntry, TableSet, format, sha256};
+use crate::cli::{HEADING, print_beside, print_json, warn};
+use crate::io::{Format, TableSet, format, sha256};
 use crate::light;
 use crate::light::bake::Order;
-use crate::light::{Clamped, InvalidTexels, Light};
+use crate::light::{Clamped, InvalidTexels, Light, LightSource, SetDetails};
 use crate::scene;
 use crate::scene::{Material, Scene};
 use crate::table::Table;
 use crate::table::axis::{Axis, Mapping, Positions, Variable};
 use crate::table::quantity::SPLIT_SUM_ERROR;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
 
@@ -183,13 +182,6 @@ pub fn run(args: &Args) -> Result<()> {
     if args.json { print_json(&manifest) } else { Ok(()) }
 }
 
-/// The name of a light, its description for the manifest, and the hash of its file.
-struct LightSource {
-    name: String,
-    json: Value,
-    sha256: Option<String>,
-}
-
 fn light_of(args: &Args) -> Result<(Light, LightSource)> {
     let Some(path) = &args.env else {
         let light = args.sky.clone().ok_or_else(|| Error::input("give --env FILE or --sky LIGHT"))?;
@@ -292,7 +284,7 @@ fn compute(
         Order { evaluator, light, name: &source.name, tolerance: args.tolerance, check: sampled, observer };
     let mut stages = Timings::default();
     let spread = args.normals.or(args.normal.is_none().then_some(NORMALS));
-    let mut truncation = Value::Null;
+    let mut truncation = None;
     let tables = match (args.quantity, lit) {
         (Wanted::Radiance, Some(LitMaterial { material, .. })) => {
             let [theta_n, phi_n] = normals(args, args.normals)?;
@@ -316,42 +308,31 @@ fn compute(
         (Wanted::Sh, _) => {
             let irradiance = order.irradiance(normals(args, spread)?, &mut stages)?;
             let ([sh, convolved], off) = order.harmonics(&irradiance, &mut stages)?;
-            truncation = json!(off);
+            truncation = Some(off);
             vec![sh, convolved, irradiance]
         }
         _ => vec![order.irradiance(normals(args, spread)?, &mut stages)?],
     };
+    // A table that misses its tolerance is no reason to draw first.
     tables.iter().try_for_each(|table| order.within_tolerance(table))?;
-
-    let device = device_json(evaluator);
-    let mut provenance = Provenance::from([
-        ("light".into(), source.name.clone()),
-        ("device".into(), format!("{} ({})", device["name"], device["driver"])),
-    ]);
-    provenance.extend(source.sha256.iter().map(|hash| ("light_sha256".into(), hash.clone())));
-    let mut formats = args.format.clone();
-    formats.dedup();
-    let mut written = Vec::new();
-    let tables = tables.into_iter().map(|table| IDENTITY.apply(table)).collect::<Result<Vec<_>>>()?;
-    for table in &tables {
-        written.push(set.write(table, &formats, &provenance)?);
-    }
-    let mut files = Map::new();
+    let mut files = Vec::new();
     if !args.no_picture {
         observer.begin("drawing");
         let materials: Vec<_> = lit.iter().map(|lit| &lit.material).collect();
         let png = picture::draw(light, &source.name, &materials, &args.roughness, evaluator, observer)?;
-        files.insert("light.png".into(), set.add("light.png", &png)?.into());
+        files.push(("light.png", png));
     }
-    let tables_json: Vec<_> =
-        tables.iter().zip(&written).map(|(table, files)| TableEntry::new(table, files.clone())).collect();
-    let manifest = json!({
-        "schema": 1, "kind": "light", "gonio": { "version": env!("CARGO_PKG_VERSION") },
-        "light": source.json, "material": lit.map(|lit| &lit.material.name), "device": device,
-        "tolerance": args.tolerance, "truncation": truncation, "tables": tables_json, "files": files,
-        "stages": stages,
-    });
-    Ok((tables, manifest))
+    let mut formats = args.format.clone();
+    formats.dedup();
+    let details = SetDetails {
+        source,
+        material: lit.map(|lit| lit.material.name.as_str()),
+        formats: &formats,
+        truncation,
+        timings: &stages,
+        files: &files,
+    };
+    order.write(set, tables, &details)
 }
 
 /// Computes |LD (F0·A + F90·B) − Le| / Le, with Le at least the table's floor.

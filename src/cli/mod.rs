@@ -14,11 +14,10 @@ mod subject;
 mod trade;
 mod watch;
 
-use crate::bake::Evaluator;
 use crate::base::error::{Error, Result};
+use crate::light::set::device_json;
 use anstyle::{AnsiColor, Style};
 use clap::{Parser, Subcommand};
-use serde_json::{Value, json};
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
@@ -117,16 +116,6 @@ fn tell(text: &str) {
 
 fn warn(message: &str) {
     tell(&format!("{WARNING}warning:{WARNING:#} {message}"));
-}
-
-/// Describes the evaluator for JSON files.
-fn device_json(evaluator: &Evaluator) -> Value {
-    match evaluator {
-        Evaluator::Device(device) => {
-            json!({ "kind": device.kind(), "name": device.name(), "driver": device.driver() })
-        }
-        Evaluator::Cpu => json!({ "kind": "CPU", "name": "cpu", "driver": "f64" }),
-    }
 }
 
 /// Prints a message on stdout, or on stderr if stdout carries JSON.

@@ -24,11 +24,15 @@ pub mod irradiance;
 #[cfg(feature = "files")]
 mod read;
 mod reference;
+#[cfg(feature = "files")]
+pub(crate) mod set;
 mod sky;
 
 pub use environment::{Clamped, Environment, MAX_TEXELS};
 #[cfg(feature = "files")]
 pub use read::{InvalidTexels, read};
+#[cfg(feature = "files")]
+pub use set::{LightSource, SetDetails};
 pub use sky::{Directional, Disk, Radiance, Sky};
 
 /// Distant incident light: the same at every point of a surface.
