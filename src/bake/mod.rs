@@ -230,9 +230,10 @@ impl Path<'_> {
         for finer in 1..=TRIES {
             let second = plan.clone().with_tolerance(plan.tolerance() * CERTIFY_RATIO.powi(finer))?;
             let second = self.evaluate(&second, &mut spent, tick)?;
-            let taken = values.take_beyond(KEPT_SHARE * plan.tolerance(), &second, plan.channels().len());
-            left = taken.kept.max(taken.largest);
-            if taken.largest == 0.0 {
+            let replacement =
+                values.replace_beyond(KEPT_SHARE * plan.tolerance(), &second, plan.channels().len());
+            left = replacement.kept.max(replacement.replaced);
+            if replacement.replaced == 0.0 {
                 break;
             }
         }
@@ -348,7 +349,7 @@ fn check_energy(plan: &TablePlan, table: &Table) -> Result<()> {
             return Err(Error::Promise(format!(
                 "table {}: it reflects {reflected} at {}, more than the {bound} that its models promise",
                 plan.name(),
-                table.place(texel)
+                table.coordinates(texel)
             )));
         }
     }

@@ -238,7 +238,7 @@ fn missing(model: &'static Model, setting: &Setting, mus: Vec<f64>) -> Vec<f64> 
         let roughness = model.shape.map(|shape| shape.roughness(setting.alpha));
         let axes = vec![Axis::listed(Variable::Mu, mus)?];
         let plan = TablePlan::basis("E", &SPLIT_SUM, model, roughness, axes)?;
-        let plan = plan.with_places(setting.parameters)?.with_tolerance(FINEST)?;
+        let plan = plan.with_all_parameters(setting.parameters)?.with_tolerance(FINEST)?;
         let lobe = &plan.lobes()[0];
         let work = Work::new(&plan, lobe);
         let WorkKind::Integrals { inner, outer } = &work.kind else { return Ok(vec![f64::NAN; count]) };
