@@ -33,7 +33,7 @@ pub struct Points<'a> {
 }
 
 enum Place<'a> {
-    Device(Box<gpu::Points<'a>>),
+    Device(Box<gpu::PointKernels<'a>>),
     Cpu,
 }
 
@@ -51,7 +51,7 @@ impl<'a> Points<'a> {
             return Err(Error::input(format!("{} is a delta and has no values", lobe.model().name)));
         }
         let place = match evaluator {
-            Evaluator::Device(device) => Place::Device(Box::new(gpu::Points::new(device, lobes)?)),
+            Evaluator::Device(device) => Place::Device(Box::new(gpu::PointKernels::new(device, lobes)?)),
             Evaluator::Cpu => Place::Cpu,
         };
         Ok(Self { lobes: lobes.to_vec(), place })
@@ -163,7 +163,7 @@ fn twins(lobes: &[Lobe], setting: &[ScaledLobe], (pair, azimuth): &(Pair, Azimut
     let mut sums = [0.0; 3];
     for (lobe, at) in lobes.iter().zip(setting) {
         let [a, b] = (lobe.model().lobe)(pair, azimuth, &lobe.setting(at.alpha));
-        let scale = at.scale.at(pair.mu_i, pair.mu_e);
+        let scale = at.scale.value(pair.mu_i, pair.mu_e);
         for (sum, [weight_a, weight_b]) in sums.iter_mut().zip(lobe.weights()) {
             *sum += scale * (weight_a * a + weight_b * b);
         }
