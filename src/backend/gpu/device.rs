@@ -214,7 +214,7 @@ impl Device {
                 let adapter = found.ok_or_else(|| {
                     let names: Vec<_> = adapters.iter().map(|a| format!("\"{}\"", a.info.name)).collect();
                     Error::Device(if names.is_empty() {
-                        format!("no adapter is named \"{name}\": there is none at all. {INSTALL} The CPU path needs none")
+                        format!("no adapter is named \"{name}\": there is none at all. {INSTALL} The device \"cpu\", which is the CPU path, needs none")
                     } else {
                         format!(
                             "no adapter is named \"{name}\"; there are {}, auto and cpu",
