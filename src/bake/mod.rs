@@ -28,7 +28,7 @@ use measured::table_error;
 pub enum Evaluator {
     /// A device, in f32, or in f64 where it has that.
     Device(Box<Device>),
-    /// All cores, in f64.
+    /// The CPU path: all cores, in f64.
     Cpu,
 }
 

@@ -14,7 +14,7 @@ pub enum Error {
     Io {
         /// The file or folder.
         path: PathBuf,
-        /// What was being done to it: "read", "write", "create the folder".
+        /// The action that failed: "read", "write", "create the folder".
         action: &'static str,
         /// The operating system's reason.
         source: std::io::Error,

@@ -143,7 +143,7 @@ pub fn projected_polygon(corners: &[[f64; 3]], normal: [f64; 3]) -> f64 {
 pub struct Rectangle {
     /// Its middle, m.
     pub centre: [f64; 3],
-    /// From the middle to the middles of two neighbouring sides, m, perpendicular to each other. It faces along
+    /// The vectors from the middle to the middles of two neighbouring sides, m, perpendicular to each other. It faces along
     /// their cross product.
     pub half_sides: [[f64; 3]; 2],
 }
@@ -227,8 +227,8 @@ pub fn photon_energy(wavelength: f64) -> f64 {
     PLANCK * LIGHT_SPEED / wavelength
 }
 
-/// All directions: 4π sr.
+/// The solid angle of all directions, 4π sr.
 pub const SPHERE: f64 = 2.0 * TAU;
 
-/// All directions above a surface: 2π sr. Its projected solid angle is π.
+/// The solid angle of all directions above a surface, 2π sr. Its projected solid angle is π.
 pub const HEMISPHERE: f64 = TAU;

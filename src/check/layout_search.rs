@@ -23,7 +23,7 @@ use std::cell::RefCell;
 /// When no size up to 512 meets the tolerance.
 pub(crate) fn optimise(table: TablePlan, auto: &[Variable], storage: Option<Storage>) -> Result<TablePlan> {
     let search = Search::new(&table, auto, storage);
-    let mut candidates: Vec<Candidate> =
+    let mut candidates: Vec<LayoutCandidate> =
         search.shortlist().iter().filter_map(|options| search.best(options)).collect();
     candidates.sort_by_key(|candidate| candidate.bytes);
     let mut candidates = candidates.into_iter();
@@ -77,14 +77,14 @@ impl AxisOption {
 }
 
 /// A layout with its bytes and its largest error at the test points.
-struct Candidate {
+struct LayoutCandidate {
     axes: Vec<Axis>,
     storage: Storage,
     bytes: usize,
     error: f64,
 }
 
-impl Candidate {
+impl LayoutCandidate {
     fn layout(&self) -> Layout {
         let axes = self.axes.iter().map(|axis| {
             let mapping = if axis.mapping() == Mapping::Sqrt { "sqrt" } else { "linear" };
@@ -252,7 +252,7 @@ impl<'a> Search<'a> {
     }
 
     /// The smallest table of these options that meets the tolerance.
-    fn best(&self, options: &[OptionErrors]) -> Option<Candidate> {
+    fn best(&self, options: &[OptionErrors]) -> Option<LayoutCandidate> {
         let (texels, first) = self.least(options)?;
         // Formats in the order of their bytes: the first in which some size meets the tolerance.
         self.storages.iter().find_map(|&storage| {
@@ -282,7 +282,7 @@ impl<'a> Search<'a> {
         first: &[Axis],
         last: AxisOption,
         bound: usize,
-    ) -> Option<Candidate> {
+    ) -> Option<LayoutCandidate> {
         let candidate = |n: usize| {
             let mut axes = self.table.axes().to_vec();
             let chosen = first.iter().cloned().chain(last.axis(n));
@@ -309,7 +309,7 @@ impl<'a> Search<'a> {
     }
 
     /// The candidate of some axes and a format, with its error at the test points; `None` where its values do not fit.
-    fn candidate(&self, axes: Vec<Axis>, storage: Storage) -> Option<Candidate> {
+    fn candidate(&self, axes: Vec<Axis>, storage: Storage) -> Option<LayoutCandidate> {
         let nodes = axes.iter().map(|axis| axis.values().to_vec()).collect();
         let plan = fine(self.table, nodes, search_tolerance(self.table));
         let channels = self.table.channels().len();
@@ -323,11 +323,11 @@ impl<'a> Search<'a> {
             let read = look_up(&axes, &values, channels, &point);
             error = read.iter().zip(truth).map(|(a, b)| (a - b).abs()).fold(error, f64::max);
         }
-        Some(Candidate { bytes: values.len() * storage.bytes(), axes, storage, error })
+        Some(LayoutCandidate { bytes: values.len() * storage.bytes(), axes, storage, error })
     }
 
     /// Measures a candidate between its own samples too, and lengthens its axes a little if need be.
-    fn confirmed(&self, mut candidate: Candidate) -> Option<Candidate> {
+    fn confirmed(&self, mut candidate: LayoutCandidate) -> Option<LayoutCandidate> {
         const TRIES: usize = 6;
         for _ in 0..TRIES {
             let plan = self.table.at_samples(candidate.axes.clone());

@@ -260,7 +260,7 @@ impl Axis {
     /// The axis with another number of samples over the same range.
     ///
     /// # Errors
-    /// As [`Axis::new`]; listed values have no other count.
+    /// The errors of [`Axis::new`]; listed values have no other count.
     pub fn with_count(&self, count: usize) -> Result<Self> {
         Self::new(self.variable, count, self.range, self.positions, self.mapping)
     }
@@ -277,7 +277,7 @@ impl Axis {
         Self { values: indices.iter().map(|&k| self.values[k]).collect(), ..*self }
     }
 
-    /// The same samples from the last to the first, for readers whose axis runs down: the one axis whose values
+    /// The axis with its samples from the last to the first, for readers whose axis runs down: the one axis whose values
     /// decrease. A square-root mapping has no reversed form, so that its values are listed.
     #[cfg(feature = "files")]
     pub(crate) fn reversed(&self) -> Self {

@@ -310,8 +310,8 @@ impl Baker {
             let end = (first + per_step).min(range.end);
             let job = KernelJob { first: count(first)?, end: count(end)?, ..job };
             let job = self.init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
-            let more = more_inputs(first..end);
-            let buffers = [&job, output].into_iter().chain(&stage.inputs).chain(&more);
+            let inputs = more_inputs(first..end);
+            let buffers = [&job, output].into_iter().chain(&stage.inputs).chain(&inputs);
             steps.push(DispatchStep {
                 pipeline: pipeline.clone(),
                 bind_group: self.bind(&pipeline, buffers.map(wgpu::Buffer::as_entire_binding)),
@@ -340,8 +340,8 @@ impl Baker {
         const BYTES: u64 = (VALUE_WINDOW * QUAD_FACTORS * 16) as u64;
         let pipeline = &self.pipeline(stage.kernel, stage.model, stage.channels, stage.precision)?;
         let groups = rows.groups(units);
-        let all = groups.concat();
-        let rows = self.init(bytemuck::cast_slice(&all), wgpu::BufferUsages::STORAGE);
+        let row_data = groups.concat();
+        let rows = self.init(bytemuck::cast_slice(&row_data), wgpu::BufferUsages::STORAGE);
         let windows = stage.per_unit.div_ceil(VALUE_WINDOW);
         let mut end = 0;
         for (phi_i, group) in groups.iter().enumerate() {

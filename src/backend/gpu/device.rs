@@ -59,7 +59,7 @@ enum Owner {
     Caller,
 }
 
-/// All adapters that could bake, the best first; none in a build without any back end of wgpu.
+/// Lists all adapters that could bake, the best first; none in a build without any back end of wgpu.
 pub fn adapters() -> Vec<Adapter> {
     if wgpu::Instance::enabled_backend_features().is_empty() {
         return Vec::new();
