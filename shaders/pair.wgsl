@@ -10,7 +10,7 @@ struct Pair {
     mu_i: real,   // cos θi
     mu_e: real,   // cos θe
     bin: real,    // 1 / weight of this θe cell where it holds the mirror direction, else 0
-    own: real,    // α of a row of values; of an integral, the weight of this θe
+    alpha_or_weight: real, // α of a row of values; of an integral, the weight of this θe
     st: real,     // (sin θi + sin θe)/2
     dt: real,     // (sin θi − sin θe)/2
 }

@@ -10,7 +10,7 @@ struct Job {
     azimuths: u32,
     nodes: u32,
     tiles: u32,
-    alpha: f32,               // of a list of points; of what is interpolated, by how much it may fall below 0
+    alpha_or_bound: f32,      // points: α; sums: how far below 0 interpolation may leave an integral
     parameters: array<vec4f, 4>, // of the lobe, by place; then what f32 drops of them
 }
 

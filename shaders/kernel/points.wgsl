@@ -11,5 +11,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let point = min(id.x, job.end - 1u);
     let p = points[point];
     let pair = pair_of(p);
-    write(job.base + point, p.weight * lobe(pair, azimuth_of(p), job.alpha, lobe_row(pair, job.alpha)));
+    write(job.base + point, p.weight * lobe(pair, azimuth_of(p), job.alpha_or_bound, lobe_row(pair, job.alpha_or_bound)));
 }

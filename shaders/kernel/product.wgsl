@@ -11,7 +11,7 @@ struct Plain {
     mu_i: real,
     mu_e: real,
     bin: real,
-    own: real,
+    alpha_or_weight: real,
 }
 
 @group(0) @binding(2) var<storage, read> alphas: array<real>;
@@ -26,7 +26,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     // drivers mask every instruction.
     let invocation = min(job.first + id.x, job.end - 1u);
     let p = pairs[invocation % job.columns];
-    let pair = Pair(p.hz2, p.dt2, p.ss, p.sd, p.mu_i, p.mu_e, p.bin, p.own, 0.0, 0.0);
+    let pair = Pair(p.hz2, p.dt2, p.ss, p.sd, p.mu_i, p.mu_e, p.bin, p.alpha_or_weight, 0.0, 0.0);
     let alpha = alphas[invocation / job.columns];
     let row = lobe_row(pair, alpha);
     var sum = real2();
@@ -38,5 +38,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
         sum += inner;
     }
-    write(invocation - job.base, pair.own * sum);
+    write(invocation - job.base, pair.alpha_or_weight * sum);
 }

@@ -78,5 +78,5 @@ fn keep(c: u32, u: u32, a: real4, b: real4) {
 /// Integrals are not negative; what polynomials leave below 0, within the tolerance, is 0. Not by max, which swallows NaN.
 fn raised(ab: real2) -> real2 {
     let zero = real2();
-    return select(ab, zero, (ab < zero) & (ab >= zero - real2(real(job.alpha))));
+    return select(ab, zero, (ab < zero) & (ab >= zero - real2(real(job.alpha_or_bound))));
 }

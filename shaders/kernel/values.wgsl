@@ -66,17 +66,17 @@ fn row_at(row: u32) -> Row {
     let given = rows[there];
     let pair = given.pair;
     let first = (u32(given.place) * job.azimuths + job.nodes) * CHANNELS;
-    return Row(pair, given.scale, lobe_row(pair, pair.own), first, there == row);
+    return Row(pair, given.scale, lobe_row(pair, pair.alpha_or_weight), first, there == row);
 }
 
 fn evaluate(row: Row, quad: u32, z: Azimuths, w: Weights) {
     if ADD && !row.is_there {
         return;
     }
-    let a0 = lobe(row.pair, z.a, row.pair.own, row.lobe);
-    let a1 = lobe(row.pair, z.b, row.pair.own, row.lobe);
-    let a2 = lobe(row.pair, z.c, row.pair.own, row.lobe);
-    let a3 = lobe(row.pair, z.d, row.pair.own, row.lobe);
+    let a0 = lobe(row.pair, z.a, row.pair.alpha_or_weight, row.lobe);
+    let a1 = lobe(row.pair, z.b, row.pair.alpha_or_weight, row.lobe);
+    let a2 = lobe(row.pair, z.c, row.pair.alpha_or_weight, row.lobe);
+    let a3 = lobe(row.pair, z.d, row.pair.alpha_or_weight, row.lobe);
     let at = row.first + quad * CHANNELS;
     if SCALED {
         // What the row is multiplied with is the weights' to bear: 1 changes no bit.

@@ -3,14 +3,14 @@
 #[cfg(feature = "batch")]
 use crate::base::error::Error;
 use crate::integrate::evaluate;
-use crate::integrate::rule_set::{Work, WorkKind};
+use crate::integrate::rule_set::{RuleKind, RuleSet};
 use crate::model::lobe::Lobe;
 use crate::plan::TablePlan;
 use rayon::prelude::*;
 
-/// The values of a table, row-major, channels last.
+/// Evaluates the values of a table, row-major, channels last.
 ///
-/// `tick` is called as work is done, with a share of 1, and stops it by returning an error.
+/// It calls `tick` as it goes on, with a share of 1; an error from `tick` stops it.
 pub(crate) fn evaluate<E: Send>(
     table: &TablePlan,
     tick: &(impl Fn(f64) -> Result<(), E> + Sync),
@@ -19,17 +19,17 @@ pub(crate) fn evaluate<E: Send>(
     let mut sums = vec![0.0; table.texels() * channels];
     let share = 1.0 / table.lobes().len() as f64;
     for lobe in table.lobes() {
-        let work = Work::new(table, lobe);
-        match &work.kind {
-            WorkKind::Values(values) => {
-                let rows = work.alphas.len() * values.rows();
+        let rules = RuleSet::new(table, lobe);
+        match &rules.kind {
+            RuleKind::Values(values) => {
+                let rows = rules.alphas.len() * values.rows();
                 sums.par_chunks_mut(values.columns() * channels).enumerate().try_for_each(|(row, out)| {
-                    add_row(out, lobe, &work, row);
+                    add_row(out, lobe, &rules, row);
                     tick(share / rows as f64)
                 })?;
             }
-            WorkKind::Integrals { inner, outer } => {
-                let texels = evaluate::texels(&work, inner, outer, lobe, &|part| tick(share * part))?;
+            RuleKind::Integrals { inner, outer } => {
+                let texels = evaluate::texels(&rules, inner, outer, lobe, &|part| tick(share * part))?;
                 sums.chunks_mut(channels).zip(texels).for_each(|(out, sum)| add(out, lobe, sum));
             }
         }
@@ -37,8 +37,8 @@ pub(crate) fn evaluate<E: Send>(
     Ok(sums)
 }
 
-/// The values of some rows of a table of values at a time (a row is all azimuths of an α and a pair):
-/// `sink` gets each of `tiles` in order.
+/// Evaluates a table of values tile by tile, and hands each of `tiles` to `sink` in order. A tile is a range of rows: all
+/// azimuths of an α and a pair.
 #[cfg(feature = "batch")]
 pub(crate) fn stream(
     table: &TablePlan,
@@ -46,11 +46,11 @@ pub(crate) fn stream(
     sink: &mut dyn FnMut(usize, &[f32]) -> Result<(), Error>,
 ) -> Result<(), Error> {
     let row = table.axes().last().map_or(1, |axis| axis.len()) * table.channels().len();
-    let works: Vec<_> = table.lobes().iter().map(|lobe| (lobe, Work::new(table, lobe))).collect();
+    let rule_sets: Vec<_> = table.lobes().iter().map(|lobe| (lobe, RuleSet::new(table, lobe))).collect();
     for (k, tile) in tiles.iter().enumerate() {
         let mut sums = vec![0.0; tile.len() * row];
         sums.par_chunks_mut(row).zip(tile.clone()).for_each(|(out, row)| {
-            works.iter().for_each(|(lobe, work)| add_row(out, lobe, work, row));
+            rule_sets.iter().for_each(|(lobe, rules)| add_row(out, lobe, rules, row));
         });
         let values: Vec<_> = sums.into_iter().map(|x| x as f32).collect();
         sink(k, &values)?;
@@ -58,16 +58,18 @@ pub(crate) fn stream(
     Ok(())
 }
 
-fn add_row(out: &mut [f64], lobe: &Lobe, work: &Work, row: usize) {
-    let WorkKind::Values(values) = &work.kind else { return };
-    let setting = lobe.setting(work.alphas[row / values.rows()]);
-    let (pair, frame) = values.place(row % values.rows());
-    let scale = work.scales.get(row / values.rows()).map_or(1.0, |scale| scale.at(pair.mu_i, pair.mu_e));
-    for (azimuth, out) in values.frames[frame].iter().zip(out.chunks_mut(lobe.weights().len())) {
+/// Adds a lobe to a row of values.
+fn add_row(out: &mut [f64], lobe: &Lobe, rules: &RuleSet, row: usize) {
+    let RuleKind::Values(values) = &rules.kind else { return };
+    let setting = lobe.setting(rules.alphas[row / values.rows()]);
+    let (pair, phi_i) = values.pair_and_phi(row % values.rows());
+    let scale = rules.scales.get(row / values.rows()).map_or(1.0, |scale| scale.value(pair.mu_i, pair.mu_e));
+    for (azimuth, out) in values.azimuths[phi_i].iter().zip(out.chunks_mut(lobe.weights().len())) {
         add(out, lobe, (lobe.model().lobe)(pair, azimuth, &setting).map(|x| scale * x));
     }
 }
 
+/// Adds the weighted components (A, B) of a lobe to the channels.
 fn add(out: &mut [f64], lobe: &Lobe, [a, b]: [f64; 2]) {
     for (out, [weight_a, weight_b]) in out.iter_mut().zip(lobe.weights()) {
         *out += weight_a * a + weight_b * b;

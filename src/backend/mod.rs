@@ -1,4 +1,4 @@
-//! What computes tables: the CPU path in f64, and a device through wgpu.
+//! The evaluators of tables: the CPU path in f64, and a device through wgpu.
 
 pub(crate) mod cpu;
 pub mod gpu;

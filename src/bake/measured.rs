@@ -5,7 +5,7 @@ use crate::check::{bilinear, cross_check};
 use crate::plan::TablePlan;
 use crate::table::{Check, TableError, Values};
 
-/// The error of `values`, the table of `plan` as it is stored.
+/// Measures the error of `values`, the stored table of `plan`.
 pub(super) fn table_error(
     plan: &TablePlan,
     values: &Values,

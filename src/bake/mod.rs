@@ -1,4 +1,4 @@
-//! Bakes tables: evaluate, look, cross-check.
+//! Bakes tables: evaluates, certifies and checks them.
 
 /// Compares with the reference where the feature `check` is on; without it the estimate is all that is known.
 #[cfg_attr(not(feature = "check"), path = "unmeasured.rs")]
@@ -24,29 +24,29 @@ use crate::table::storage::{Storage, Stored};
 use crate::table::{Table, TableError, Values};
 use measured::table_error;
 
-/// What evaluates tables.
+/// The evaluator of tables: a device or the CPU path.
 pub enum Evaluator {
-    /// A device, in f32.
+    /// A device, in f32, or in f64 where it has that.
     Device(Box<Device>),
-    /// All cores, in f64.
+    /// The CPU path: all cores, in f64.
     Cpu,
 }
 
-/// Who watches a bake, and may stop it.
+/// An observer of a bake, which may stop it.
 pub trait Observer: Sync {
-    /// A step begins: "baking ggx.split_sum".
+    /// Hears that a step begins: "baking ggx.split_sum".
     fn begin(&self, _step: &str) {}
 
-    /// More of the step is done, as a share of it.
+    /// Hears that a further share of the step is done.
     ///
     /// # Errors
-    /// To stop the bake.
+    /// An error stops the bake.
     fn advance(&self, _share: f64) -> Result<()> {
         Ok(())
     }
 }
 
-/// Nobody watches.
+/// The observer that does nothing.
 pub struct Unobserved;
 
 impl Observer for Unobserved {}
@@ -72,52 +72,52 @@ impl Evaluator {
         &self,
         plan: &TablePlan,
         check: Check,
-        stages: &mut Timings,
+        timings: &mut Timings,
         observer: &dyn Observer,
     ) -> Result<Table> {
-        let computed = self.compute(plan, check, stages, observer)?;
+        let computed = self.compute(plan, check, timings, observer)?;
         observer.begin(&format!("checking {}", plan.name()));
         let start = Stopwatch::start();
         let table = computed.check(plan, check, &|share| observer.advance(share));
-        stages.check += start.seconds();
+        timings.check += start.seconds();
         table
     }
 
-    /// Evaluates a table, and certifies integrals that are to be checked at all.
+    /// Evaluates a table, and certifies its integrals by a second rule if anything is to be checked.
     pub(crate) fn compute(
         &self,
         plan: &TablePlan,
         check: Check,
-        stages: &mut Timings,
+        timings: &mut Timings,
         observer: &dyn Observer,
     ) -> Result<Computed> {
         plan.check_fits_memory()?;
         observer.begin(&format!("baking {}", plan.name()));
         let tick = |share| observer.advance(share);
-        let before = stages.dispatch + stages.readback;
+        let before = timings.dispatch + timings.readback;
         let path = self.path(plan);
-        let mut values = path.evaluate(plan, stages, &tick)?;
-        let seconds = stages.dispatch + stages.readback - before;
+        let mut values = path.evaluate(plan, timings, &tick)?;
+        let seconds = timings.dispatch + timings.readback - before;
         let mut estimate = path.estimate(plan);
         if check != Check::Sample(0) && plan.rule() == Rule::Warped && plan.quantity().is_integral() {
             // The finest rule has none beyond it to be checked by: comparing it with itself proves nothing.
             let finest = plan.rule_tolerance() <= FINEST;
             estimate = match finest {
                 true => None,
-                false => Some(path.certify(plan, &mut values, stages, &tick)?),
+                false => Some(path.certify(plan, &mut values, timings, &tick)?),
             };
         }
         Ok(Computed { values, estimate, origin: self.origin(plan, seconds) })
     }
 
-    /// Where the table of a plan comes from.
+    /// The origin of the table of a plan: its rule, precision and seconds.
     pub(crate) fn origin(&self, plan: &TablePlan, seconds: f64) -> Origin {
         let path = self.path(plan);
         Origin { rule: path.rule(plan, self), precision: path.name(), seconds }
     }
 
-    /// How a plan is carried out here: f64 where its tolerance asks for it, and the CPU where the device
-    /// has none. Values in f64 are the CPU's: no table of theirs is stored beyond f32 by a device.
+    /// The path that evaluates a plan: in f64 where its tolerance asks for it, and on the CPU where the device has no f64.
+    /// The CPU evaluates all values in f64, as a device stores values in f32 only.
     pub(crate) fn path(&self, plan: &TablePlan) -> Path<'_> {
         match (self, plan.precision()) {
             (Self::Device(device), Precision::F32) => Path::Device(device, Precision::F32),
@@ -129,15 +129,15 @@ impl Evaluator {
     }
 }
 
-/// A table's values, which nobody has looked at yet: that takes no device.
+/// A table's values before they are checked, which takes no device.
 pub(crate) struct Computed {
     values: Values,
-    /// The error that is promised, or found between two rules.
+    /// The error that the rule promises, or that was found between two rules.
     estimate: Option<f64>,
     origin: Origin,
 }
 
-/// Where a table comes from.
+/// The origin of a table: its rule, precision and seconds.
 pub(crate) struct Origin {
     rule: String,
     precision: &'static str,
@@ -145,7 +145,7 @@ pub(crate) struct Origin {
 }
 
 impl Computed {
-    /// The table as it is stored, with its error.
+    /// Rounds the values to their storage format, and measures the error.
     pub(crate) fn check(
         self,
         plan: &TablePlan,
@@ -168,7 +168,7 @@ impl Computed {
 }
 
 impl Origin {
-    /// The table of a plan, with what was found.
+    /// Makes the table of a plan from its values and its error.
     pub(crate) fn table(self, plan: &TablePlan, values: Values, error: TableError) -> Table {
         Table {
             name: plan.name().into(),
@@ -192,7 +192,7 @@ impl Origin {
 #[derive(Clone, Copy)]
 pub(crate) enum Path<'a> {
     Device(&'a Device, Precision),
-    /// Always f64; the precision is what was asked for.
+    /// The CPU path, always in f64; the precision is the one that was asked for.
     Cpu(Precision),
 }
 
@@ -200,50 +200,51 @@ impl Path<'_> {
     fn evaluate(
         self,
         plan: &TablePlan,
-        stages: &mut Timings,
+        timings: &mut Timings,
         tick: &(impl Fn(f64) -> Result<()> + Sync),
     ) -> Result<Values> {
         match self {
-            Self::Device(device, precision) => device.evaluate(plan, precision, stages, tick),
+            Self::Device(device, precision) => device.evaluate(plan, precision, timings, tick),
             Self::Cpu(_) => {
                 let start = Stopwatch::start();
                 let values = cpu::evaluate(plan, tick)?;
-                stages.dispatch += start.seconds();
+                timings.dispatch += start.seconds();
                 Ok(Values::F64(values))
             }
         }
     }
 
-    /// Checks a table by the rule of a tenth of its tolerance. Texels that differ by more than half the
-    /// tolerance are redone: they take the finer rule's value, which is then checked by the next.
-    /// Returns the largest difference that is left, which counts values that nothing has checked yet.
+    /// Certifies a table by the rule of a tenth of its tolerance. Texels that differ by more than half the
+    /// tolerance take the finer rule's value, which the next rule then checks. Returns the largest difference that is left;
+    /// it counts values that no further rule has checked.
     fn certify(
         self,
         plan: &TablePlan,
         values: &mut Values,
-        stages: &mut Timings,
+        timings: &mut Timings,
         tick: &(impl Fn(f64) -> Result<()> + Sync),
     ) -> Result<f64> {
         const TRIES: i32 = 3;
         let mut spent = Timings::default();
-        let mut left = 0.0;
+        let mut largest = 0.0;
         for finer in 1..=TRIES {
             let second = plan.clone().with_tolerance(plan.tolerance() * CERTIFY_RATIO.powi(finer))?;
             let second = self.evaluate(&second, &mut spent, tick)?;
-            let taken = values.take_beyond(KEPT_SHARE * plan.tolerance(), &second, plan.channels().len());
-            left = taken.kept.max(taken.largest);
-            if taken.largest == 0.0 {
+            let replacement =
+                values.replace_beyond(KEPT_SHARE * plan.tolerance(), &second, plan.channels().len());
+            largest = replacement.kept.max(replacement.replaced);
+            if replacement.replaced == 0.0 {
                 break;
             }
         }
-        stages.compose += spent.compose;
-        stages.compile += spent.compile;
-        stages.certify += spent.dispatch + spent.readback;
-        Ok(left)
+        timings.compose += spent.compose;
+        timings.compile += spent.compile;
+        timings.certify += spent.dispatch + spent.readback;
+        Ok(largest)
     }
 
-    /// What is promised before anything is measured: the budget of values, the tolerance of the warped
-    /// rule. The other rules promise nothing.
+    /// The error that is promised before anything is measured: the budget of values, or the tolerance of the warped rule.
+    /// The other rules promise nothing.
     pub(crate) fn estimate(self, plan: &TablePlan) -> Option<f64> {
         if plan.quantity().is_integral() {
             return (plan.rule() == Rule::Warped).then_some(plan.tolerance());
@@ -260,7 +261,7 @@ impl Path<'_> {
         )
     }
 
-    /// The rule, and where it ran if that was not the evaluator's own place.
+    /// The rule in words, with the CPU named where the evaluator is a device.
     fn rule(self, plan: &TablePlan, evaluator: &Evaluator) -> String {
         let rule = if plan.quantity().is_value() { "pointwise".into() } else { plan.rule().to_string() };
         match (self, evaluator) {
@@ -271,7 +272,7 @@ impl Path<'_> {
         }
     }
 
-    /// The arithmetic.
+    /// The name of the precision.
     fn name(self) -> &'static str {
         match self {
             Self::Device(_, precision) => precision.name(),
@@ -304,7 +305,7 @@ pub fn within_tolerance(plan: &TablePlan, table: &Table) -> Result<()> {
     if measured <= plan.tolerance() {
         return Ok(());
     }
-    let place: Vec<_> = table.error.worst.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+    let worst: Vec<_> = table.error.worst.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let remedy = match plan.rule() {
         Rule::Grid { .. } => "take a finer grid or the warped rule",
         Rule::Gauss { .. } | Rule::Hammersley { .. } | Rule::Vndf { .. } | Rule::Random { .. } => {
@@ -313,7 +314,7 @@ pub fn within_tolerance(plan: &TablePlan, table: &Table) -> Result<()> {
         Rule::Warped if table.storage.bytes() < Storage::F32.bytes() => "allow more, or store it as f32",
         // No table is better than the f32 that it is stored in.
         Rule::Warped if table.precision == "f32" && plan.tolerance() > STORED_F32 => {
-            "allow more, or bake with --device cpu, which is f64"
+            "allow more, or bake with the device \"cpu\", which is f64"
         }
         Rule::Warped => "allow more",
     };
@@ -321,24 +322,24 @@ pub fn within_tolerance(plan: &TablePlan, table: &Table) -> Result<()> {
         "table {}: its error is {measured:.2e} where {:.0e} is allowed ({}); {remedy}",
         plan.name(),
         plan.tolerance(),
-        place.join(", ")
+        worst.join(", ")
     )))
 }
 
-/// No direction may send back more than the lobes' models promise (1 each where energy is conserved).
+/// Refuses a table that reflects more in some direction than the lobes' models promise (1 each where energy is conserved).
 fn check_energy(plan: &TablePlan, table: &Table) -> Result<()> {
     if plan.quantity().limits != Limits::Reflectance {
         return Ok(());
     }
     // A basis is weighed by F0 and F90 ≤ 1, so its components reflect together; RGB does not mix.
     let together = plan.is_basis();
-    // What is missing from a lobe counts with that lobe.
-    let is_missing = |lobe: &Lobe| lobe.factors().iter().any(Factor::is_missing);
-    let alone = plan.lobes().iter().all(is_missing);
+    // A lobe of multiple scattering makes up for the loss of another lobe, whose bound covers both.
+    let compensates = |lobe: &Lobe| lobe.factors().iter().any(Factor::is_missing);
+    let alone = plan.lobes().iter().all(compensates);
     let bound: f64 = plan
         .lobes()
         .iter()
-        .filter(|lobe| alone || !is_missing(lobe))
+        .filter(|lobe| alone || !compensates(lobe))
         .map(|lobe| lobe.weights().as_flattened().iter().copied().fold(0.0, f64::max) * lobe.rho_bound())
         .sum();
     for texel in 0..table.texels() {
@@ -348,7 +349,7 @@ fn check_energy(plan: &TablePlan, table: &Table) -> Result<()> {
             return Err(Error::Promise(format!(
                 "table {}: it reflects {reflected} at {}, more than the {bound} that its models promise",
                 plan.name(),
-                table.place(texel)
+                table.coordinates(texel)
             )));
         }
     }
@@ -363,7 +364,7 @@ mod tests {
     use crate::table::axis::{Axis, Variable};
     use crate::table::quantity::{Evaluation, FixedDirection, Quantity, RHO_DH};
 
-    /// ρ_hd = ∫ f cos θi dωi: ωe is fixed. What its description says is all that the bake needs to know of it.
+    /// ρ_hd = ∫ f cos θi dωi with ωe fixed. The bake needs no more than this description of it.
     static RHO_HD: Quantity = Quantity {
         name: "rho_hd",
         symbol: "ρ_hd",
@@ -375,7 +376,7 @@ mod tests {
     };
 
     /// A new quantity is planned, integrated and compared with the reference by its description alone, and is ρ_dh of
-    /// a reciprocal model. Restored by Turquin's factor a lobe is not reciprocal: there the fixed direction decides.
+    /// a reciprocal model. A lobe times Turquin's factor is not reciprocal: there the fixed direction decides.
     #[test]
     fn a_quantity_is_what_its_description_says() {
         let bake = |quantity: &'static Quantity, kind: Compensation| {

@@ -4,7 +4,7 @@ use crate::base::error::Result;
 use crate::plan::TablePlan;
 use crate::table::{Check, TableError, Values};
 
-/// The estimate of the error of a table of `plan`; nothing is compared.
+/// Returns the estimate of the error of a table of `plan`; nothing is compared.
 pub(super) fn table_error(
     plan: &TablePlan,
     _: &Values,

@@ -27,16 +27,16 @@ const PI_REST: f64 = 1.224_646_799_147_353_2e-16;
 impl Angles {
     /// δφ = φe − φi − π in (−π, π], right to its last digits: 0 is the mirror direction.
     ///
-    /// φe − φi is kept with what its rounding drops, and the nearest odd multiple of π, π in two parts,
-    /// taken from it without rounding: near the mirror direction nothing is lost.
+    /// The sum φe − φi keeps the digits that its rounding drops, and the nearest odd multiple of π, in two parts,
+    /// is subtracted without rounding: near the mirror direction no digit is lost.
     pub fn delta_phi(&self) -> f64 {
         delta_phi(self.phi_i, self.phi_e)
     }
 
-    /// Whether these are directions.
+    /// Checks that all four angles are finite and in range.
     ///
     /// # Errors
-    /// [`Error::Input`] with the angle that is not.
+    /// [`Error::Input`] with the angle that is out of range.
     pub fn check(&self) -> Result<()> {
         for (name, theta) in [("theta_i", self.theta_i), ("theta_e", self.theta_e)] {
             if !(0.0..=FRAC_PI_2).contains(&theta) {
@@ -55,13 +55,13 @@ impl Angles {
         Ok(())
     }
 
-    /// The factors that everything is made of.
+    /// The half-angle terms of the pair, from which every lobe is evaluated.
     pub(crate) fn factors(&self) -> (Pair, Azimuth) {
         (Pair::new(self.theta_i, self.theta_e), Azimuth::at(self.phi_i, self.delta_phi()))
     }
 }
 
-/// φe − φi − π in (−π, π], as [`Angles::delta_phi`].
+/// The azimuth φe − φi − π in (−π, π], computed as [`Angles::delta_phi`] says.
 pub(crate) fn delta_phi(phi_i: f64, phi_e: f64) -> f64 {
     let (a, b) = (phi_e, -phi_i);
     let sum = a + b;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-/// What can go wrong, sorted by who can mend it; the command's exit code follows the sort.
+/// An error, sorted by who can mend it; the command's exit code follows the sort.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The input is not usable: a scene, a recipe, a parameter, an axis.
@@ -14,7 +14,7 @@ pub enum Error {
     Io {
         /// The file or folder.
         path: PathBuf,
-        /// What was being done to it: "read", "write", "create the folder".
+        /// The action that failed: "read", "write", "create the folder".
         action: &'static str,
         /// The operating system's reason.
         source: std::io::Error,
@@ -41,7 +41,7 @@ pub enum Error {
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 impl Error {
-    /// An [`Error::Input`].
+    /// Makes an [`Error::Input`] with a message.
     pub fn input(message: impl Into<String>) -> Self {
         Self::Input(message.into())
     }

@@ -1,14 +1,14 @@
-//! Factors of a pair of directions, in f64: the twin of `shaders/pair.wgsl`.
+//! Half-angle terms of a pair of directions, in f64: the twin of `shaders/pair.wgsl`.
 //!
 //! With the azimuth kept relative to the mirror direction, δ = φe − φi − π, everything that a BRDF
 //! of the half vector needs is a product or a sum of non-negative terms, so that the specular peak
 //! survives f32 (half vectors of unit vectors in f32 are off by 0.3 at α = 1e-3).
 
-/// The cosine at grazing: f diverges where both directions graze, and the half vector is 0 there.
-/// Every evaluation takes μ = max(cos θ, 2⁻²⁴).
+/// The least cosine of an evaluation, 2⁻²⁴: every evaluation takes μ = max(cos θ, 2⁻²⁴), since f diverges where both
+/// directions graze, and the half vector is 0 there.
 pub const MU_MIN: f64 = 1.0 / (1 << 24) as f64;
 
-/// What depends on θi and θe alone.
+/// The terms of the half vector that depend on θi and θe alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pair {
     /// ((cos θi + cos θe)/2)²
@@ -25,7 +25,7 @@ pub struct Pair {
     pub mu_e: f64,
     /// 1 / weight of this θe cell where it holds the mirror direction, else 0.
     pub bin: f64,
-    /// The weight of this θe in an integral whose directions have nodes of their own, else 1.
+    /// The weight of this θe in an integral where each θi has its own nodes in θe, else 1.
     pub weight: f64,
     /// (sin θi + sin θe)/2
     pub st: f64,
@@ -33,28 +33,28 @@ pub struct Pair {
     pub dt: f64,
 }
 
-/// What depends on δφ alone; and, for what tells azimuths from each other, on φi.
+/// The terms of the half vector that depend on δφ alone; in `frame`, for anisotropic lobes, on φi too.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Azimuth {
     /// sin²(δ/2)
     pub sin2: f64,
     /// cos²(δ/2)
     pub cos2: f64,
-    /// max(0, −cos δ) = max(0, cos(φi − φe)): 0 unless ωe is on the side of ωi. A factor of its own, as what
-    /// a lobe weighs it with may be 1/μ, and sin² − cos² has lost its digits near δ = π/2.
+    /// max(0, −cos δ) = max(0, cos(φi − φe)): 0 unless ωe is on the side of ωi. It is stored by itself, because a lobe
+    /// may weight it by 1/μ, and sin² − cos² has lost its digits near δ = π/2.
     pub back: f64,
     /// The weight of this δφ in an integral.
     pub weight: f64,
     /// 1 / weight of this δφ cell where it holds δφ = 0, else 0.
     pub bin: f64,
     /// (cos φi ± cos φe)/2 and (sin φi ± sin φe)/2, the sums first.
-    pub frame: Frame,
+    pub frame: HalfSums,
 }
 
-/// Means and half differences of the azimuths' cosines and sines. The tangential half vector is
-/// (st cp + dt cm, st sp + dt sm): what vanishes in the mirror direction, cp, sp and dt, is right to its last digits.
+/// Half sums and half differences of the azimuths' cosines and sines. The tangential half vector is
+/// (st cp + dt cm, st sp + dt sm); cp, sp and dt, which vanish in the mirror direction, are right to their last digits.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Frame {
+pub struct HalfSums {
     /// (cos φi + cos φe)/2
     pub cp: f64,
     /// (cos φi − cos φe)/2
@@ -65,7 +65,7 @@ pub struct Frame {
     pub sm: f64,
 }
 
-/// What depends on all three: of h = (ωi + ωe)/2, |h|² and its tangential part; ωi·ωm = |h|, and 1 − ωi·ωm.
+/// The half vector h = (ωi + ωe)/2: |ht|² of its tangential part, |h|², c = ωi·ωm = |h|, and 1 − c.
 #[derive(Clone, Copy)]
 pub(crate) struct Half {
     pub ht2: f64,
@@ -75,17 +75,17 @@ pub(crate) struct Half {
 }
 
 impl Half {
-    /// As if it were seen through a stretch of the tangent plane by √(αy/αx) and its inverse: D of unequal α is then that
-    /// of equal ones, √(αx αy).
+    /// The half vector with the tangent plane stretched by √(αy/αx) and its inverse: D of (αx, αy) is then the isotropic D
+    /// of √(αx αy).
     pub(crate) fn stretched(self, p: &Pair, a: &Azimuth, [alpha_x, alpha_y]: [f64; 2]) -> Self {
-        let Frame { cp, cm, sp, sm } = a.frame;
+        let HalfSums { cp, cm, sp, sm } = a.frame;
         let (x, y) = (p.st * cp + p.dt * cm, p.st * sp + p.dt * sm);
         Self { ht2: x * x * (alpha_y / alpha_x) + y * y * (alpha_x / alpha_y), ..self }
     }
 }
 
 impl Pair {
-    /// The factors of (θi, θe), rad.
+    /// The terms of (θi, θe), rad.
     pub fn new(theta_i: f64, theta_e: f64) -> Self {
         let (theta_i, theta_e) = (off_horizon(theta_i), off_horizon(theta_e));
         let (half_sum, half_difference) = (0.5 * (theta_i + theta_e), 0.5 * (theta_i - theta_e));
@@ -107,8 +107,8 @@ impl Pair {
 }
 
 impl Pair {
-    /// The same of cos θ and sin θ of both, for whoever has these to their last digits: angles near the horizon do not.
-    /// Under an integral both are right down to 0.
+    /// The terms from cos θ and sin θ of both directions, for callers that have these to their last digits, which angles
+    /// near the horizon do not give. Under an integral both are right down to 0.
     pub(crate) fn of_cosines_and_sines([mu_i, mu_e]: [f64; 2], [s_i, s_e]: [f64; 2]) -> Self {
         let (sum, hz) = (s_i + s_e, 0.5 * (mu_i + mu_e));
         let dz = 0.5 * (mu_i - mu_e);
@@ -128,13 +128,13 @@ impl Pair {
         }
     }
 
-    /// As the shader lays it out.
+    /// The terms in the order of `Pair` in `shaders/pair.wgsl`.
     pub(crate) fn to_array(self) -> [f64; 10] {
         let Self { hz2, dt2, ss, sd, mu_i, mu_e, bin, weight, st, dt } = self;
         [hz2, dt2, ss, sd, mu_i, mu_e, bin, weight, st, dt]
     }
 
-    /// Without what tells azimuths from each other.
+    /// The terms that isotropic lobes need, in the order of `shaders/kernel/product.wgsl`.
     pub(crate) fn to_plain(self) -> [f64; 8] {
         let [plain @ .., _, _] = self.to_array();
         plain
@@ -142,24 +142,24 @@ impl Pair {
 }
 
 impl Azimuth {
-    /// As the shader lays it out.
+    /// The terms in the order of `Azimuth` in `shaders/pair.wgsl`.
     pub(crate) fn to_array(self) -> [f64; 9] {
-        let Self { sin2, cos2, back, weight, bin, frame: Frame { cp, cm, sp, sm } } = self;
+        let Self { sin2, cos2, back, weight, bin, frame: HalfSums { cp, cm, sp, sm } } = self;
         [sin2, cos2, back, weight, bin, cp, cm, sp, sm]
     }
 
-    /// The factors of δφ, rad, at φi = 0.
+    /// The terms of δφ, rad, at φi = 0.
     pub fn new(delta_phi: f64) -> Self {
         Self::at(0.0, delta_phi)
     }
 
-    /// The factors of φi and δφ, rad.
+    /// The terms of φi and δφ, rad.
     pub fn at(phi_i: f64, delta_phi: f64) -> Self {
         let (sin, cos) = (0.5 * delta_phi).sin_cos();
         let back = (-delta_phi.cos()).max(0.0);
         // φe = φi + π + δφ; sums and differences as products.
         let (sin_mid, cos_mid) = (phi_i + 0.5 * delta_phi).sin_cos();
-        let frame = Frame { cp: sin_mid * sin, cm: cos_mid * cos, sp: -cos_mid * sin, sm: sin_mid * cos };
+        let frame = HalfSums { cp: sin_mid * sin, cm: cos_mid * cos, sp: -cos_mid * sin, sm: sin_mid * cos };
         Self { sin2: sin * sin, cos2: cos * cos, back, weight: 0.0, bin: 0.0, frame }
     }
 }
@@ -173,12 +173,12 @@ impl Half {
     }
 }
 
-/// sin θ = √((1 − μ)(1 + μ))
+/// Computes sin θ = √((1 − μ)(1 + μ)) from μ = cos θ.
 pub(crate) fn sine(mu: f64) -> f64 {
     ((1.0 - mu) * (1.0 + mu)).sqrt()
 }
 
-/// θ, or the angle whose cosine is [`MU_MIN`] if it is nearer to the horizon.
+/// Clamps θ to the angle whose cosine is [`MU_MIN`].
 pub(crate) fn off_horizon(theta: f64) -> f64 {
     theta.min(MU_MIN.acos())
 }

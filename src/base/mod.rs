@@ -1,4 +1,4 @@
-//! What everything else stands on: errors, precision, angles, half-angle terms, quadrature.
+//! The base that all other rooms use: errors, precision, angles, half-angle terms, quadrature.
 
 pub mod angles;
 pub(crate) mod cubature;

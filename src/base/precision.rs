@@ -1,6 +1,6 @@
 //! The two arithmetics, and the errors that f32 makes in values and integrals.
 
-/// An arithmetic.
+/// The floating-point format that values are computed in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Precision {
     /// Single: 24 bits.
@@ -18,7 +18,7 @@ impl Precision {
         }
     }
 
-    /// Bytes of a number.
+    /// The bytes of one number.
     pub(crate) fn bytes(self) -> usize {
         match self {
             Self::F32 => 4,
@@ -27,15 +27,15 @@ impl Precision {
     }
 }
 
-/// The relative error of values in f32, in units of 2⁻²⁴: factors, α and weights are rounded once each;
+/// The relative error of values in f32, in units of 2⁻²⁴: half-angle terms, α and weights are rounded once each;
 /// q of GGX's D takes 5 and is squared; G2/(4 μi μe) takes 6; Fc is the fifth power of what takes 4;
 /// products take 4. The sum bounds the worst case, B of a lobe.
 pub const VALUE_F32: f64 = 40.0 / (1 << 24) as f64;
 
-/// The least tolerance of integrals that f32 meets: roundings of some hundred terms, measured at 5e-7.
+/// The least tolerance that integrals in f32 meet: a sum of some hundred terms rounds by 5e-7, measured.
 pub const INTEGRAL_F32: f64 = 1e-6;
 
-/// Relative errors of values are taken of max(f, this), in sr⁻¹: below it f32 runs out of exponent.
+/// The floor of relative errors, sr⁻¹: a value's error is divided by max(f, floor), as f32 runs out of exponent below.
 pub const VALUE_FLOOR: f64 = 1e-30;
 
 /// The relative error of f64 values stored as f32.

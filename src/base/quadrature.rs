@@ -1,13 +1,13 @@
-//! The fixed rules of integration that the evaluators use, on [0, 1].
+//! Quadrature rules on [0, 1]: Gauss–Legendre and midpoints.
 
 use std::f64::consts::PI;
 
 /// A node and its weight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Node {
-    /// Where, in [0, 1].
+    /// The node, in [0, 1].
     pub x: f64,
-    /// How much; a rule's weights sum to 1.
+    /// The weight; a rule's weights sum to 1.
     pub weight: f64,
 }
 

@@ -1,10 +1,10 @@
-//! Radiometry: what a BRDF is defined by, from solid angle to photons. SI units: lengths in m, areas in m², angles in
+//! Radiometry: the quantities that define a BRDF, from solid angle to photons. SI units: lengths in m, areas in m², angles in
 //! rad, solid angles in sr, power in W, time in s.
 //!
 //! | quantity | symbol | unit | here |
 //! |---|---|---|---|
-//! | solid angle | Ω, dω = sin θ dθ dφ | sr | [`Cell`], [`cone`], [`triangle`], [`polygon`], [`Rectangle`] |
-//! | projected solid angle | ∫ cos θ dω | sr | [`Cell::projected`], [`projected_cone`], [`projected_polygon`] |
+//! | solid angle | Ω, dω = sin θ dθ dφ | sr | [`DirectionCell`], [`cone`], [`triangle`], [`polygon`], [`Rectangle`] |
+//! | projected solid angle | ∫ cos θ dω | sr | [`DirectionCell::projected`], [`projected_cone`], [`projected_polygon`] |
 //! | apparent area | cos θ_A ΔA / R² | sr | [`apparent`] |
 //! | radiance | L | W sr⁻¹ m⁻² | [`Beam`] |
 //! | power, energy | Φ, Q | W, J | [`Beam::power`], [`Beam::energy`] |
@@ -25,15 +25,15 @@ pub const LIGHT_SPEED: f64 = 299_792_458.0;
 /// Its integrals are products and sums of terms of one sign, of the middle and the differences of the angles, so a cell
 /// of 1e-8 rad has them to its last digits: cos θ₀ − cos θ₁ does not.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Cell {
+pub struct DirectionCell {
     /// Zenith angles, in [0, π].
     pub theta: [f64; 2],
     /// Azimuths, at most 2π apart.
     pub phi: [f64; 2],
 }
 
-impl Cell {
-    /// θ of the middle, and the difference of the two.
+impl DirectionCell {
+    /// The middle of the two zenith angles, and their difference.
     fn band(&self) -> (f64, f64) {
         let [a, b] = self.theta;
         (0.5 * (a + b), b - a)
@@ -57,8 +57,8 @@ impl Cell {
         0.5 * (2.0 * middle).sin() * height.sin() * self.width()
     }
 
-    /// ∫ ω dω, sr: what a radiance L in the cell sends through a surface of normal n is L n·this, if all of the cell is
-    /// above the surface.
+    /// The vector ∫ ω dω, sr. A radiance L in the cell gives a surface of normal n the irradiance L n·∫ ω dω, if all of the
+    /// cell is above the surface.
     pub fn vector(&self) -> [f64; 3] {
         let [x, y] = chord(self.phi);
         let s = sin2(self.theta);
@@ -79,10 +79,10 @@ pub(crate) fn sin2([a, b]: [f64; 2]) -> f64 {
     0.5 * minus_sin(height) + height.sin() * middle.sin().powi(2)
 }
 
-/// x − sin x for x ∈ [0, π], which a difference has no digits of where x is small: x³/3! − x⁵/5! + …, whose terms
-/// fall by x²/20 and faster.
+/// Computes x − sin x for x ∈ [0, π]. The difference loses all digits where x is small, so the series
+/// x³/3! − x⁵/5! + … takes its place there, whose terms fall by x²/20 and faster.
 fn minus_sin(x: f64) -> f64 {
-    /// From here on the difference loses 2 bits, and below it eight terms leave 1e-17.
+    /// Above this x the difference loses at most 2 bits; below it eight terms of the series leave 1e-17.
     const SERIES: f64 = 1.0;
     if x.abs() > SERIES {
         return x - x.sin();
@@ -138,12 +138,12 @@ pub fn projected_polygon(corners: &[[f64; 3]], normal: [f64; 3]) -> f64 {
     corners.iter().enumerate().map(edge).sum()
 }
 
-/// A flat rectangle in space: what a light or a patch of a surface is.
+/// A flat rectangle in space, such as a light or a patch of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rectangle {
     /// Its middle, m.
     pub centre: [f64; 3],
-    /// From the middle to the middles of two neighbouring sides, m, perpendicular to each other. It faces along
+    /// The vectors from the middle to the middles of two neighbouring sides, m, perpendicular to each other. It faces along
     /// their cross product.
     pub half_sides: [[f64; 3]; 2],
 }
@@ -162,19 +162,19 @@ impl Rectangle {
         4.0 * u.cross(v).length()
     }
 
-    /// The solid angle that it takes of what a point sees, sr; positive if it faces the point.
+    /// The solid angle of the rectangle as seen from a point, sr; positive if it faces the point.
     pub fn solid_angle(&self, from: [f64; 3]) -> f64 {
         polygon(&self.corners().map(|corner| std::array::from_fn(|k| corner[k] - from[k])))
     }
 
-    /// Ω ≈ cos θ_A ΔA / R² as a point sees it: [`apparent`] with R to its middle.
+    /// The approximation Ω ≈ cos θ_A ΔA / R² as seen from a point: [`apparent`] with R to the middle.
     pub fn apparent(&self, from: [f64; 3]) -> f64 {
         let [u, v] = self.half_sides.map(DVec3::from_array);
         let away = DVec3::from_array(from) - DVec3::from_array(self.centre);
         apparent(self.area(), u.cross(v).normalize().dot(away.normalize()), away.length())
     }
 
-    /// By how much [`Rectangle::apparent`] is too large, as a share of the exact solid angle. It falls with the square of
+    /// The relative error of [`Rectangle::apparent`] against the exact solid angle. It falls with the square of
     /// size over distance: of a square of side s, seen from straight above at R, s²/(4 R²).
     pub fn apparent_error(&self, from: [f64; 3]) -> f64 {
         let exact = self.solid_angle(from);
@@ -201,23 +201,23 @@ pub struct Beam {
 }
 
 impl Beam {
-    /// cos θ ΔA Δω, the étendue, m² sr: what a beam keeps along its way.
+    /// The étendue cos θ ΔA Δω, m² sr, which a beam keeps along its way.
     pub fn etendue(&self) -> f64 {
         self.cos_theta * self.area * self.solid_angle
     }
 
-    /// Φ = L cos θ ΔA Δω, W.
+    /// The power Φ = L cos θ ΔA Δω, W.
     pub fn power(&self) -> f64 {
         self.radiance * self.etendue()
     }
 
-    /// Q = L cos θ ΔA Δω Δt, J, over Δt in s.
+    /// The energy Q = L cos θ ΔA Δω Δt, J, over Δt in s.
     pub fn energy(&self, duration: f64) -> f64 {
         self.power() * duration
     }
 }
 
-/// How many photons of a wavelength λ, m, an energy Q, J, is: Q λ / (h c).
+/// The number of photons of wavelength λ, m, in an energy Q, J: Q λ / (h c).
 pub fn photons(energy: f64, wavelength: f64) -> f64 {
     energy * wavelength / (PLANCK * LIGHT_SPEED)
 }
@@ -227,8 +227,8 @@ pub fn photon_energy(wavelength: f64) -> f64 {
     PLANCK * LIGHT_SPEED / wavelength
 }
 
-/// All directions: 4π sr.
+/// The solid angle of all directions, 4π sr.
 pub const SPHERE: f64 = 2.0 * TAU;
 
-/// All directions above a surface: 2π sr. Its projected solid angle is π.
+/// The solid angle of all directions above a surface, 2π sr. Its projected solid angle is π.
 pub const HEMISPHERE: f64 = TAU;

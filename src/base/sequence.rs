@@ -1,6 +1,7 @@
 //! Low-discrepancy steps through an index range.
 
-/// A step of the golden section through 0 … n − 1: without a common factor, so that it visits all before it repeats one.
+/// The step of a golden-section walk through 0 … n − 1. It has no common factor with n, so the walk visits every index
+/// before it repeats one.
 pub(crate) fn stride(n: usize) -> usize {
     let golden = (n as f64 * 0.618_033_988_749_894_9) as usize;
     (golden.max(1)..).find(|&step| gcd(step, n) == 1).unwrap_or(1)

@@ -1,4 +1,4 @@
-//! Where the time of a bake goes.
+//! The seconds that each stage of a bake takes.
 
 use serde::Serialize;
 use std::time::Instant;
@@ -20,7 +20,7 @@ impl Stopwatch {
     }
 }
 
-/// Where the time went, in seconds.
+/// The seconds that each stage of a bake took.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Timings {
     /// Reading the scene and its textures, and planning.

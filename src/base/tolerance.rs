@@ -25,7 +25,7 @@ use super::error::{Error, Result};
 pub struct Tolerance(f64);
 
 impl Tolerance {
-    /// The tolerance where nobody names one: 1e-4.
+    /// The default tolerance, 1e-4.
     pub const DEFAULT: Self = Self(1e-4);
 
     /// A tolerance of `value`.
@@ -54,33 +54,33 @@ impl Tolerance {
 /// The rule's share where rounding of storage or bilinear look-ups take the rest.
 pub(crate) const RULE_SHARE: f64 = 0.1;
 
-/// The most that the rule may be off below unorm16: a quarter of its step, 1/65535.
+/// The largest error of the rule below unorm16: a quarter of its step, 1/65535.
 pub(crate) const UNORM_RULE: f64 = 0.25 / 65535.0;
 
-/// The share of each axis that is interpolated between integrals.
+/// The share of the rule's tolerance that interpolation along each axis may take.
 pub(crate) const CHEBYSHEV_SHARE: f64 = 1.0 / 8.0;
 
-/// The share of a lobe that factors multiply.
+/// The share of the rule's tolerance to which a lobe times factors is integrated.
 pub(crate) const FACTOR_SHARE: f64 = 0.01;
 
 /// The tolerance of the certificate's rule, in tolerances of the rule that it judges.
 pub(crate) const CERTIFY_RATIO: f64 = 0.1;
 
-/// The difference of both rules up to which a texel keeps its value.
+/// The largest difference between the two rules, in tolerances, at which a texel keeps its value.
 pub(crate) const KEPT_SHARE: f64 = 0.5;
 
-/// What a texel may reflect above the bound that its models promise.
+/// The energy, in tolerances, that a texel may reflect above the bound that its models promise.
 pub(crate) const ENERGY_SLACK: f64 = 2.0;
 
-/// The share that the layout search may use up at its test points.
+/// The share of the tolerance that the layout search may use up at its test points.
 #[cfg(feature = "check")]
 pub(crate) const LAYOUT_MARGIN: f64 = 0.98;
 
-/// The share of the table that the layout search takes for exact.
+/// The share of the tolerance to which the layout search computes its reference table.
 #[cfg(feature = "check")]
 pub(crate) const LAYOUT_REFERENCE_SHARE: f64 = 0.01;
 
-/// The finest tolerance that the tables of node counts know.
+/// The finest tolerance that the tables of node counts cover.
 pub(crate) const FINEST: f64 = 1e-10;
 
 /// The index of a tolerance in the tables of node counts, which are for 1e-1 … 1e-10: that of the power
@@ -90,7 +90,7 @@ pub(crate) fn decade(tolerance: f64) -> usize {
     (-tolerance.log10() - 1e-9).ceil().clamp(1.0, 10.0) as usize - 1
 }
 
-/// Whether a tolerance is beyond f32: from there on maps matter that converge longer.
+/// Whether a tolerance is finer than f32 meets: such tables take the maps that converge further.
 pub(crate) fn is_fine(tolerance: f64) -> bool {
     tolerance < 0.9e-6
 }

@@ -1,6 +1,6 @@
 //! Lists in sentences.
 
-/// "a, b or c".
+/// Joins words into a list for a sentence: "a, b or c".
 pub(crate) fn alternatives<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
     let words: Vec<_> = words.into_iter().collect();
     match words.split_last() {

@@ -3,5 +3,5 @@
 mod set;
 mod stream;
 
-pub use set::{Baked, Options, bake_set};
+pub use set::{Baked, SetOptions, bake_set};
 pub use stream::{Progress, Streaming};

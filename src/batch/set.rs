@@ -1,4 +1,4 @@
-//! Bakes everything that a plan asks for into a folder, with its manifest, all or nothing.
+//! Bakes all tables of a plan into a folder, with its manifest, all or nothing.
 
 use crate::bake::{Evaluator, Observer, within_tolerance};
 use crate::base::error::{Error, Result};
@@ -21,20 +21,20 @@ use std::panic::resume_unwind;
 use std::path::Path;
 use std::thread::{self, ScopedJoinHandle};
 
-/// What to write, and how much of it to check.
+/// The options of a set: its formats, target, checks and streaming.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Options {
-    /// The files of each table.
+pub struct SetOptions {
+    /// The formats of each table's files.
     pub formats: Vec<&'static Format>,
-    /// Whom the files are for.
+    /// The target that the files are for.
     pub target: &'static Target,
-    /// How many texels of each table to compare with the reference.
+    /// The texels of each table that are compared with the reference.
     pub check: Check,
-    /// Which tables are written piece by piece.
+    /// The tables that are written piece by piece.
     pub streaming: Streaming,
 }
 
-/// What `manifest.json` says.
+/// The contents of `manifest.json`.
 #[derive(Debug, Serialize)]
 struct Manifest<'a> {
     schema: u32,
@@ -73,20 +73,20 @@ struct Requirements<'a> {
     materials: &'a [MaterialPlan],
 }
 
-/// What became of a plan.
+/// The result of baking a plan.
 #[derive(Debug)]
 pub struct Baked {
     /// The tables, in the plan's order. Those that were streamed come without their values.
     pub tables: Vec<Table>,
-    /// Their files.
+    /// The files of each table.
     pub files: Vec<Files>,
-    /// The plan's warnings, and what the tables themselves give reason to say.
+    /// The plan's warnings, and those that the tables give reason for.
     pub warnings: Vec<String>,
-    /// Tiles of streamed tables, and how many of them an earlier bake that was cut off had finished.
+    /// The tiles of streamed tables, and how many of them an earlier bake that was cut off had finished.
     pub tiles: Progress,
-    /// Where the time went.
+    /// The seconds of each stage.
     pub stages: Timings,
-    /// The manifest as it was written.
+    /// The written manifest.
     pub manifest: serde_json::Value,
 }
 
@@ -100,8 +100,8 @@ pub fn bake_set(
     scene: &Path,
     evaluator: &Evaluator,
     dir: &Path,
-    options: &Options,
-    mut stages: Timings,
+    options: &SetOptions,
+    mut timings: Timings,
     observer: &dyn Observer,
 ) -> Result<Baked> {
     let scene = SceneFile { file: scene.display().to_string(), sha256: io::sha256(scene)? };
@@ -133,7 +133,7 @@ pub fn bake_set(
         let mut checking = None;
         for table in &plan.tables {
             if streams(&table) {
-                finished.settle(&mut checking, &mut stages)?;
+                finished.take_checked(&mut checking, &mut timings)?;
                 let tiles = finished.set.tiles(&keys, &key(table))?;
                 let streamed = stream::bake(
                     evaluator,
@@ -142,7 +142,7 @@ pub fn bake_set(
                     &tiles,
                     options,
                     &mut progress,
-                    &mut stages,
+                    &mut timings,
                     observer,
                 );
                 let (streamed, preview) = streamed.inspect_err(|error| {
@@ -150,19 +150,20 @@ pub fn bake_set(
                         let _ = finished.set.discard_tiles(); // the same tiles would break the promise again
                     }
                 })?;
-                finished.take_streamed(table, streamed, &tiles, &preview, &mut stages, observer)?;
+                finished.take_streamed(table, streamed, &tiles, &preview, &mut timings, observer)?;
                 continue;
             }
-            let compute =
-                |now: &Evaluator, stages: &mut Timings| now.compute(table, options.check, stages, observer);
-            let computed = match compute(spare.as_ref().unwrap_or(evaluator), &mut stages) {
+            let compute = |evaluator: &Evaluator, timings: &mut Timings| {
+                evaluator.compute(table, options.check, timings, observer)
+            };
+            let computed = match compute(spare.as_ref().unwrap_or(evaluator), &mut timings) {
                 Err(Error::Device(_)) if spare.is_none() => {
-                    compute(spare.insert(evaluator.reopen()?), &mut stages)
+                    compute(spare.insert(evaluator.reopen()?), &mut timings)
                 }
                 result => result,
             };
-            // What is wrong with the table before is said before what is wrong with this one.
-            let before = checking.take().map(|check: Checking| check.end(&mut stages)).transpose()?;
+            // An error of the table before comes before an error of this one.
+            let before = checking.take().map(|check: Checking| check.end(&mut timings)).transpose()?;
             let computed = computed?;
             observer.begin(&format!("checking {}", table.name()));
             let check = move || {
@@ -172,10 +173,10 @@ pub fn bake_set(
             };
             checking = Some(Checking { table, thread: scope.spawn(check) });
             if let Some((table, checked)) = before {
-                finished.take(table, checked, &mut stages)?;
+                finished.take(table, checked, &mut timings)?;
             }
         }
-        finished.settle(&mut checking, &mut stages)
+        finished.take_checked(&mut checking, &mut timings)
     })?;
     let Finished { set, tables, written, mut misses, .. } = finished;
     if !misses.is_empty() {
@@ -197,55 +198,55 @@ pub fn bake_set(
             materials: &plan.materials,
         },
         tables: tables.iter().zip(&written).map(|(t, files)| TableEntry::new(t, files.clone())).collect(),
-        stages,
+        stages: timings,
     })
     .map_err(|e| Error::Internal(format!("manifest: {e}")))?;
     set.commit(&manifest)?;
-    Ok(Baked { tables, files: written, warnings, tiles: progress, stages, manifest })
+    Ok(Baked { tables, files: written, warnings, tiles: progress, stages: timings, manifest })
 }
 
-/// A table whose values are compared with the reference by a thread of its own.
+/// A table whose values a thread compares with the reference.
 struct Checking<'scope, 'plan> {
     table: &'plan TablePlan,
     thread: ScopedJoinHandle<'scope, (Result<Table>, f64)>,
 }
 
 impl<'plan> Checking<'_, 'plan> {
-    /// Waits for it.
-    fn end(self, stages: &mut Timings) -> Result<(&'plan TablePlan, Table)> {
+    /// Waits for the thread.
+    fn end(self, timings: &mut Timings) -> Result<(&'plan TablePlan, Table)> {
         let (checked, seconds) = self.thread.join().unwrap_or_else(|panic| resume_unwind(panic));
-        stages.check += seconds;
+        timings.check += seconds;
         Ok((self.table, checked?))
     }
 }
 
-/// The tables so far, in the plan's order.
+/// The finished tables, in the plan's order.
 struct Finished<'a> {
     set: TableSet,
-    options: &'a Options,
+    options: &'a SetOptions,
     provenance: &'a Provenance,
     tables: Vec<Table>,
     written: Vec<Files>,
-    /// What tables missed; nothing is written any more when there is one.
+    /// The tolerances that tables missed; once there is one, nothing more is written.
     misses: Vec<String>,
 }
 
 impl Finished<'_> {
-    /// Takes the table that is being checked, if there is one.
-    fn settle(&mut self, checking: &mut Option<Checking>, stages: &mut Timings) -> Result<()> {
+    /// Waits for the table that is being checked, if there is one, and takes it.
+    fn take_checked(&mut self, checking: &mut Option<Checking>, timings: &mut Timings) -> Result<()> {
         let Some(check) = checking.take() else { return Ok(()) };
-        let (plan, table) = check.end(stages)?;
-        self.take(plan, table, stages)
+        let (plan, table) = check.end(timings)?;
+        self.take(plan, table, timings)
     }
 
-    fn take(&mut self, plan: &TablePlan, table: Table, stages: &mut Timings) -> Result<()> {
+    fn take(&mut self, plan: &TablePlan, table: Table, timings: &mut Timings) -> Result<()> {
         let is_met = self.is_met(plan, &table);
         let table = self.options.target.apply(table)?;
         if is_met {
             let start = Stopwatch::start();
             let formats = self.options.target.formats(&self.options.formats);
             self.written.push(self.set.write(&table, &formats, self.provenance)?);
-            stages.write += start.seconds();
+            timings.write += start.seconds();
         }
         self.tables.push(table);
         Ok(())
@@ -257,7 +258,7 @@ impl Finished<'_> {
         table: Table,
         tiles: &Tiles,
         preview: &Table,
-        stages: &mut Timings,
+        timings: &mut Timings,
         observer: &dyn Observer,
     ) -> Result<()> {
         if self.is_met(plan, &table) {
@@ -267,7 +268,7 @@ impl Finished<'_> {
             let tick = &mut |share| observer.advance(share);
             let written = self.set.write_streamed(&table, tiles, preview, &formats, self.provenance, tick)?;
             self.written.push(written);
-            stages.write += start.seconds();
+            timings.write += start.seconds();
         }
         self.tables.push(table);
         Ok(())

@@ -1,11 +1,11 @@
-//! Bakes a table larger than memory: tile by tile, each kept on disk as soon as it is done.
+//! Bakes a table larger than memory, tile by tile, and keeps each on disk as soon as it is done.
 
 use crate::backend::cpu;
 use crate::bake::{Evaluator, Observer};
 use crate::base::error::{Error, Result};
 use crate::base::precision::Precision;
 use crate::base::timings::Timings;
-use crate::batch::Options;
+use crate::batch::SetOptions;
 use crate::check::Comparison;
 use crate::io;
 use crate::io::Tiles;
@@ -15,12 +15,12 @@ use crate::table::axis::Axis;
 use crate::table::{Table, Values, indices};
 use std::ops::Range;
 
-/// Which tables are baked and written piece by piece, in bounded memory. The files are the same.
+/// The tables that are baked and written piece by piece, in bounded memory. Their files are the same as of other tables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Streaming {
-    /// Tables of values in f32 with more values than this are streamed.
+    /// The number of values above which a table of values in f32 is streamed.
     pub above: usize,
-    /// Bytes of a tile; at least one row of the last axis.
+    /// The bytes of a tile, which has at least one row of the last axis.
     pub tile: usize,
 }
 
@@ -30,17 +30,17 @@ impl Default for Streaming {
     }
 }
 
-/// How far a streamed bake was when it began.
+/// The tiles of a streamed bake, and those that it found when it began.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Progress {
-    /// Tiles of all streamed tables.
+    /// The number of tiles of all streamed tables.
     pub all: usize,
-    /// Those that an earlier bake, cut off, had finished.
+    /// The number of tiles that an earlier bake, cut off, had finished.
     pub found: usize,
 }
 
 impl Streaming {
-    /// Whether it takes this table.
+    /// Whether this table is streamed.
     pub(super) fn takes(&self, table: &TablePlan) -> bool {
         table.can_stream() && table.texels() * table.channels().len() > self.above
     }
@@ -54,7 +54,7 @@ impl Streaming {
     }
 }
 
-/// A name for everything that decides a tile's bytes. With any difference a bake starts over.
+/// The key of everything that decides a tile's bytes. With any difference a bake starts over.
 pub(super) fn key(table: &TablePlan, scene: &str, device: &str, streaming: &Streaming) -> String {
     let shaders: String = table
         .lobes()
@@ -66,23 +66,23 @@ pub(super) fn key(table: &TablePlan, scene: &str, device: &str, streaming: &Stre
     io::hash(all.as_bytes())[..32].to_string()
 }
 
-/// Bakes a table into `tiles` and measures its error. Returns it without its values, and a part of it to
-/// look at. Tiles that are there already are checked like new ones, but not computed.
+/// Bakes a table into `tiles` and measures its error. Returns the table without its values, and a preview of it. Tiles
+/// that an earlier bake finished are checked like new ones, but not computed.
 ///
-/// `spare` takes the place of a device that is lost; nothing takes the place of the spare one.
+/// `spare` takes the place of a device that is lost; it is opened once.
 #[allow(clippy::too_many_arguments)]
 pub(super) fn bake(
     evaluator: &Evaluator,
     spare: &mut Option<Evaluator>,
     plan: &TablePlan,
     tiles: &Tiles,
-    options: &Options,
+    options: &SetOptions,
     progress: &mut Progress,
-    stages: &mut Timings,
+    timings: &mut Timings,
     observer: &dyn Observer,
 ) -> Result<(Table, Table)> {
     observer.begin(&format!("baking {}", plan.name()));
-    let before = stages.dispatch + stages.readback;
+    let before = timings.dispatch + timings.readback;
     let ranges = options.streaming.tiles(plan);
     let width = plan.axes().last().map_or(1, Axis::len);
     let row = width * plan.channels().len();
@@ -101,22 +101,22 @@ pub(super) fn bake(
         let texels = |k: usize| ranges[k].start * width..ranges[k].end * width;
         if let Some(values) = tiles.load(first, ranges[first].len() * row) {
             progress.found += 1;
-            pass.take(texels(first), &values)?;
+            pass.add(texels(first), &values)?;
             observer.advance(share(first))?;
             continue;
         }
         let end = (first + 1..ranges.len()).find(|&k| tiles.has(k)).unwrap_or(ranges.len());
-        let mut keep = |k: usize, values: &[f32]| {
+        let mut store = |k: usize, values: &[f32]| {
             tiles.store(first + k, values)?;
-            pass.take(texels(first + k), values)?;
+            pass.add(texels(first + k), values)?;
             observer.advance(share(first + k))
         };
-        match spare.as_ref().unwrap_or(evaluator).stream(plan, &ranges[first..end], stages, &mut keep) {
+        match spare.as_ref().unwrap_or(evaluator).stream(plan, &ranges[first..end], timings, &mut store) {
             Err(Error::Device(_)) if spare.is_none() => *spare = Some(evaluator.reopen()?),
             result => result?,
         }
     }
-    let seconds = stages.dispatch + stages.readback - before;
+    let seconds = timings.dispatch + timings.readback - before;
     let error = pass.comparison.finish();
     let table = Table { error: error.clone(), seconds, ..pass.table };
     let axes = pass.preview.axes(plan);
@@ -125,7 +125,7 @@ pub(super) fn bake(
 }
 
 impl Evaluator {
-    /// Another one like this, after its device was lost.
+    /// Opens another evaluator like this, after its device was lost.
     pub(super) fn reopen(&self) -> Result<Self> {
         Ok(match self {
             Self::Device(device) => Self::Device(Box::new(device.reopen()?)),
@@ -137,31 +137,31 @@ impl Evaluator {
         &self,
         plan: &TablePlan,
         tiles: &[Range<usize>],
-        stages: &mut Timings,
+        timings: &mut Timings,
         sink: &mut dyn FnMut(usize, &[f32]) -> Result<()>,
     ) -> Result<()> {
         match self {
-            Self::Device(device) => device.stream(plan, tiles, stages, sink),
+            Self::Device(device) => device.stream(plan, tiles, timings, sink),
             Self::Cpu => cpu::stream(plan, tiles, sink),
         }
     }
 }
 
-/// What looks at every tile as it passes.
+/// The pass over a table's tiles: it checks, compares and previews each.
 struct Pass<'a> {
-    /// Without values.
+    /// The table without its values.
     table: Table,
     comparison: Comparison<'a>,
     preview: Preview,
-    /// Tiles that have passed.
+    /// The number of tiles that have passed.
     done: usize,
 }
 
 impl Pass<'_> {
-    fn take(&mut self, texels: Range<usize>, values: &[f32]) -> Result<()> {
+    fn add(&mut self, texels: Range<usize>, values: &[f32]) -> Result<()> {
         self.table.check_sane_from(texels.start, values)?;
         self.comparison.add(texels.clone(), &|k| f64::from(values[k]), &|_| Ok(()))?;
-        self.preview.take(texels, values);
+        self.preview.add(texels, values);
         self.done += 1;
         Ok(())
     }
@@ -175,17 +175,17 @@ struct Preview {
 }
 
 impl Preview {
-    /// Samples of the axes that span a picture, and of those that tell pictures apart: seven have the
-    /// first, the middle, and the thirds.
+    /// The largest number of samples of the two axes that span a picture.
     const ACROSS: usize = 256;
+    /// The largest number of samples of the other axes: seven have the first, the middle, and the thirds.
     const APART: usize = 7;
 
     fn new(plan: &TablePlan) -> Self {
         let shape = plan.shape();
         let chosen = shape.iter().enumerate().map(|(k, &n)| {
-            let most = if k + 2 >= shape.len() { Self::ACROSS } else { Self::APART };
-            let step = |i: usize| (i * (n - 1) + (most - 1) / 2) / (most - 1);
-            if n <= most { (0..n).collect() } else { (0..most).map(step).collect() }
+            let count = if k + 2 >= shape.len() { Self::ACROSS } else { Self::APART };
+            let step = |i: usize| (i * (n - 1) + (count - 1) / 2) / (count - 1);
+            if n <= count { (0..n).collect() } else { (0..count).map(step).collect() }
         });
         Self { chosen: chosen.collect(), shape, values: Vec::new() }
     }
@@ -194,14 +194,14 @@ impl Preview {
         plan.axes().iter().zip(&self.chosen).map(|(axis, chosen)| axis.thinned(chosen)).collect()
     }
 
-    /// Takes what it has chosen of whole rows.
-    fn take(&mut self, texels: Range<usize>, values: &[f32]) {
+    /// Adds the chosen samples of whole rows.
+    fn add(&mut self, texels: Range<usize>, values: &[f32]) {
         let Some((&width, slow)) = self.shape.split_last() else { return };
         let Some((across, chosen)) = self.chosen.split_last() else { return };
         let channels = values.len() / texels.len().max(1);
         for (row, values) in (texels.start / width..).zip(values.chunks_exact(width * channels)) {
-            let at = indices(slow, row);
-            if at.iter().zip(chosen).all(|(k, chosen)| chosen.binary_search(k).is_ok()) {
+            let index = indices(slow, row);
+            if index.iter().zip(chosen).all(|(k, chosen)| chosen.binary_search(k).is_ok()) {
                 for &k in across {
                     self.values.extend_from_slice(&values[k * channels..][..channels]);
                 }

@@ -1,8 +1,8 @@
-//! The error between nodes: what a table is worth to a reader that samples it bilinearly.
+//! The error between samples: measures a table as a reader sees it that samples it bilinearly.
 //!
-//! A reader finds u from the axis's mapping, u = (x − a)/(b − a) or its square root, and from u the place
+//! A reader finds u from the axis's mapping, u = (x − a)/(b − a) or its square root, and from u the position
 //! among the samples: u (n − 1) on nodes, u n − ½ on centres. Outside the outermost samples the texture
-//! clamps to the edge: what that costs is counted too. Weights are exact here; texture units round them
+//! clamps to the edge, and the error of that is counted too. Weights are exact here; texture units round them
 //! to 1/256 or so.
 //!
 //! Near (μ, α) = (0, 0) ρ depends on μ/α alone, so no table converges there. The largest error is
@@ -22,7 +22,7 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::convert::Infallible;
 
-/// Where the promise of a variable begins.
+/// The part of a variable's range in which the bilinear error is promised.
 pub(crate) fn promised(variable: Variable, [a, b]: [f64; 2]) -> [f64; 2] {
     match variable {
         Variable::Mu => [a.max(MU), b],
@@ -32,15 +32,15 @@ pub(crate) fn promised(variable: Variable, [a, b]: [f64; 2]) -> [f64; 2] {
     }
 }
 
-/// No table converges at (μ, α) = (0, 0): promises begin here.
+/// The least μ and roughness of the promise: no table converges at (μ, α) = (0, 0).
 const MU: f64 = 1.0 / 256.0;
 const ROUGHNESS: f64 = 0.05;
 
 /// The tolerance of the fast f64 path, far below any that a bilinear look-up meets.
 const FINE: Tolerance = Tolerance::known(1e-6);
 
-/// The error of `values`, the table of `plan`, as it is sampled bilinearly; `None` for values of f, for
-/// axes that are lists (no reader finds its place in them), and where nothing is to be checked.
+/// Measures the bilinear error of `values`, the table of `plan`; `None` for values of f, for listed axes (no reader finds
+/// its position in them), and where nothing is to be checked.
 pub(crate) fn measure(plan: &TablePlan, values: &Values, check: Check) -> Result<Option<InterpolationError>> {
     let known = plan.lobes().iter().all(|lobe| check::reference_of_model(lobe.model()).is_some());
     if check == Check::Sample(0) || !known || !is_sampled(plan) {
@@ -50,69 +50,71 @@ pub(crate) fn measure(plan: &TablePlan, values: &Values, check: Check) -> Result
     let coordinates: Vec<_> = plan.axes().iter().map(test_points).collect();
     let dense = Dense::new(plan, values, coordinates);
     let worst = dense.worst(&domain, SEARCHED);
-    let mut places: Vec<_> = worst.iter().map(|&texel| dense.around(plan, values, &domain, texel)).collect();
-    places.extend(check::sample(&dense.shape(), REFERENCED).into_iter().map(|texel| dense.at(texel)));
+    let mut points: Vec<_> = worst.iter().map(|&texel| dense.around(plan, values, &domain, texel)).collect();
+    points
+        .extend(check::sample(&dense.shape(), REFERENCED).into_iter().map(|texel| dense.coordinates(texel)));
 
     let channels = plan.channels().len();
-    let checked: Vec<_> = places
+    let checked: Vec<_> = points
         .par_iter()
-        .map(|at| {
-            let point = fine(plan, at.iter().map(|&x| vec![x]).collect(), FINE);
-            let fast = evaluate(&point);
-            let truth = check::reference(&point, 0);
-            let read = look_up(plan.axes(), values, channels, at);
+        .map(|point| {
+            let plan_at_point = fine(plan, point.iter().map(|&x| vec![x]).collect(), FINE);
+            let fast = evaluate(&plan_at_point);
+            let truth = check::reference(&plan_at_point, 0);
+            let read = look_up(plan.axes(), values, channels, point);
             (truth, fast, read)
         })
         .collect();
-    let (mut found, mut certified) = ((None, BTreeMap::new()), 0.0);
-    for (at, (truth, fast, read)) in places.iter().zip(&checked) {
-        let inside = at.iter().zip(&domain).all(|(&x, [a, b])| (*a..=*b).contains(&x));
+    let (mut largest, mut certified) = ((None, BTreeMap::new()), 0.0);
+    for (point, (truth, fast, read)) in points.iter().zip(&checked) {
+        let inside = point.iter().zip(&domain).all(|(&x, [a, b])| (*a..=*b).contains(&x));
         for channel in 0..channels {
             certified = f64::max(certified, or_infinite((truth[channel] - fast[channel]).abs()));
             let error = or_infinite((read[channel] - truth[channel]).abs());
-            if inside && found.0.is_none_or(|max| error > max) {
+            if inside && largest.0.is_none_or(|max| error > max) {
                 let names = plan.axes().iter().map(|axis| axis.variable().name().to_string());
-                let mut worst: BTreeMap<_, _> = names.zip(at.iter().copied()).collect();
+                let mut worst: BTreeMap<_, _> = names.zip(point.iter().copied()).collect();
                 worst.insert("channel".into(), channel as f64);
                 worst.insert("value".into(), read[channel]);
                 worst.insert("reference".into(), truth[channel]);
-                found = (Some(error), worst);
+                largest = (Some(error), worst);
             }
         }
     }
     let names = plan.axes().iter().map(|axis| axis.variable().name().to_string());
     Ok(Some(InterpolationError {
         kind: "bilinear",
-        max: found.0,
+        max: largest.0,
         rms: dense.rms(),
         domain: names.zip(domain).filter(|(_, [a, b])| a <= b).collect(),
-        worst: found.1,
+        worst: largest.1,
         points: dense.errors.len(),
-        points_checked: places.len(),
+        points_checked: points.len(),
         certified,
     }))
 }
 
-/// How many of the worst cells are searched, and how many points more are compared with the reference.
+/// The number of worst points around which a finer grid is searched.
 const SEARCHED: usize = 8;
+/// The number of further points that are compared with the reference.
 const REFERENCED: usize = 56;
 
-/// The largest error in the promise's domain by the fast path alone: for plans, which are pure.
+/// The largest error in the promise's domain, by the fast path alone: the layout search uses no reference.
 pub(crate) fn largest(plan: &TablePlan, values: &Values) -> f64 {
     let domain: Vec<_> = plan.axes().iter().map(|axis| promised(axis.variable(), axis.range())).collect();
     let dense = Dense::new(plan, values, plan.axes().iter().map(test_points).collect());
     dense.worst(&domain, 1).first().map_or(0.0, |&texel| dense.errors[texel])
 }
 
-/// Whether a reader can sample the table: an integral, over axes that a formula finds its place in.
+/// Whether a reader can sample the table: it must be an integral over axes whose positions follow from a formula.
 fn is_sampled(plan: &TablePlan) -> bool {
-    let found = |axis: &Axis| axis.len() == 1 || axis.positions() != Positions::Values;
+    let has_formula = |axis: &Axis| axis.len() == 1 || axis.positions() != Positions::Values;
     plan.quantity().is_integral()
-        && plan.axes().iter().all(found)
+        && plan.axes().iter().all(has_formula)
         && plan.axes().iter().any(|axis| axis.len() > 1)
 }
 
-/// What bilinear look-ups at x read between: the sample at or below, and the next one's weight.
+/// Finds the samples that a look-up at x reads: the one at or below, and the weight of the next.
 pub(crate) fn locate(axis: &Axis, x: f64) -> (usize, f64) {
     let (n, [a, b]) = (axis.len(), axis.range());
     if n == 1 {
@@ -120,22 +122,22 @@ pub(crate) fn locate(axis: &Axis, x: f64) -> (usize, f64) {
     }
     let u = ((x - a) / (b - a)).clamp(0.0, 1.0);
     let u = if axis.mapping() == Mapping::Sqrt { u.sqrt() } else { u };
-    let place = match axis.positions() {
+    let position = match axis.positions() {
         Positions::Centers => u * n as f64 - 0.5,
         _ => u * (n - 1) as f64,
     };
-    let place = place.clamp(0.0, (n - 1) as f64);
-    let below = (place as usize).min(n - 2);
-    (below, place - below as f64)
+    let position = position.clamp(0.0, (n - 1) as f64);
+    let below = (position as usize).min(n - 2);
+    (below, position - below as f64)
 }
 
-/// The channels that a bilinear look-up reads.
-pub(crate) fn look_up(axes: &[Axis], values: &Values, channels: usize, at: &[f64]) -> Vec<f64> {
-    let places: Vec<_> = axes.iter().zip(at).map(|(axis, &x)| locate(axis, x)).collect();
+/// Reads the channels at a point bilinearly.
+pub(crate) fn look_up(axes: &[Axis], values: &Values, channels: usize, point: &[f64]) -> Vec<f64> {
+    let positions: Vec<_> = axes.iter().zip(point).map(|(axis, &x)| locate(axis, x)).collect();
     let mut read = vec![0.0; channels];
     for corner in 0..1usize << axes.len() {
         let (mut texel, mut weight) = (0, 1.0);
-        for (k, (axis, &(below, share))) in axes.iter().zip(&places).enumerate() {
+        for (k, (axis, &(below, share))) in axes.iter().zip(&positions).enumerate() {
             let above = corner >> k & 1;
             texel = texel * axis.len() + below + above;
             weight *= if above == 1 { share } else { 1.0 - share };
@@ -148,13 +150,13 @@ pub(crate) fn look_up(axes: &[Axis], values: &Values, channels: usize, at: &[f64
     read
 }
 
-/// The same table in f64 by the fast path, over listed coordinates.
+/// The plan of the same table in f64, over listed coordinates, to `tolerance`.
 pub(crate) fn fine(plan: &TablePlan, coordinates: Vec<Vec<f64>>, tolerance: Tolerance) -> TablePlan {
     let axes = plan.axes().iter().zip(coordinates).map(|(axis, values)| axis.at_values(values));
     plan.exact_at_samples(axes.collect(), tolerance)
 }
 
-/// The fast path: all cores, f64.
+/// Evaluates a plan by the fast path, on all cores in f64.
 pub(crate) fn evaluate(plan: &TablePlan) -> Vec<f64> {
     let Ok(values) = cpu::evaluate(plan, &|_| Ok::<_, Infallible>(()));
     values
@@ -163,8 +165,9 @@ pub(crate) fn evaluate(plan: &TablePlan) -> Vec<f64> {
 /// Errors of look-ups on a grid finer than the table's.
 struct Dense {
     coordinates: Vec<Vec<f64>>,
-    /// Texel by texel, the largest of the channels and the sum of their squares.
+    /// The largest error of each texel's channels.
     errors: Vec<f64>,
+    /// The sum of the squared errors of each texel's channels.
     squares: Vec<f64>,
     channels: usize,
 }
@@ -175,7 +178,7 @@ impl Dense {
         let truth = evaluate(&fine(plan, coordinates.clone(), FINE));
         let mut dense = Self { coordinates, errors: vec![], squares: vec![], channels };
         for (texel, truth) in truth.chunks(channels).enumerate() {
-            let read = look_up(plan.axes(), values, channels, &dense.at(texel));
+            let read = look_up(plan.axes(), values, channels, &dense.coordinates(texel));
             let errors = read.iter().zip(truth).map(|(a, b)| or_infinite((a - b).abs()));
             dense.errors.push(errors.clone().fold(0.0, f64::max));
             dense.squares.push(errors.map(|e| e * e).sum());
@@ -187,21 +190,23 @@ impl Dense {
         self.coordinates.iter().map(Vec::len).collect()
     }
 
-    fn at(&self, texel: usize) -> Vec<f64> {
+    /// The coordinates of a texel of the grid.
+    fn coordinates(&self, texel: usize) -> Vec<f64> {
         self.coordinates.iter().zip(indices(&self.shape(), texel)).map(|(axis, k)| axis[k]).collect()
     }
 
-    /// The points of the domain with the largest errors, the worst first.
+    /// The `n` points of the domain with the largest errors, the worst first.
     fn worst(&self, domain: &[[f64; 2]], n: usize) -> Vec<usize> {
-        let inside =
-            |&texel: &usize| self.at(texel).iter().zip(domain).all(|(x, [a, b])| (*a..=*b).contains(x));
+        let inside = |&texel: &usize| {
+            self.coordinates(texel).iter().zip(domain).all(|(x, [a, b])| (*a..=*b).contains(x))
+        };
         let mut texels: Vec<_> = (0..self.errors.len()).filter(inside).collect();
         texels.sort_by(|&a, &b| self.errors[b].total_cmp(&self.errors[a]));
         texels.truncate(n);
         texels
     }
 
-    /// The worst of a finer grid between the neighbours of a point, as far as they lie in the domain.
+    /// The coordinates of the worst point of a finer grid between the neighbours of a point, within the domain.
     fn around(&self, plan: &TablePlan, values: &Values, domain: &[[f64; 2]], texel: usize) -> Vec<f64> {
         const STEPS: i32 = 4;
         let near = self.coordinates.iter().zip(indices(&self.shape(), texel)).zip(domain);
@@ -214,10 +219,13 @@ impl Dense {
             sorted((-STEPS..=STEPS).map(step).collect())
         });
         let finer = Dense::new(plan, values, near.collect());
-        finer.worst(domain, 1).first().map_or_else(|| self.at(texel), |&worst| finer.at(worst))
+        finer
+            .worst(domain, 1)
+            .first()
+            .map_or_else(|| self.coordinates(texel), |&worst| finer.coordinates(worst))
     }
 
-    /// Each point stands for what is nearer to it than to others, in each variable.
+    /// The root mean square error. Each point has the weight of the part of each range that is nearest to it.
     fn rms(&self) -> f64 {
         let widths: Vec<_> = self.coordinates.iter().map(|x| widths(x)).collect();
         let weight = |texel| -> f64 {
@@ -232,17 +240,17 @@ impl Dense {
     }
 }
 
-/// Samples, the middles between them in u, both ends of the range, and where the promise begins: at
-/// nodes of one axis the errors of the other stand alone, between them they add. Of long axes every so
-/// many cells are kept, but all of the first, where tables are worst.
+/// The test coordinates of an axis: its samples, the middles between them in u, both ends of the range, and the ends of
+/// the promise. At nodes of one axis the errors of the other stand alone, between them they add. A long axis keeps all of
+/// its first cells, where tables are worst, and some of the others.
 fn test_points(axis: &Axis) -> Vec<f64> {
-    const ALL_OF: usize = 24;
+    const FIRST_CELLS: usize = 24;
     const CELLS: usize = 64;
     let (n, [a, b]) = (axis.len(), axis.range());
     if n == 1 {
         return axis.values().to_vec();
     }
-    let kept = |k: usize| k < ALL_OF || k.is_multiple_of(n.div_ceil(CELLS)) || k + 2 >= n;
+    let kept = |k: usize| k < FIRST_CELLS || k.is_multiple_of(n.div_ceil(CELLS)) || k + 2 >= n;
     let middle = |x: f64, y: f64| match axis.mapping() {
         Mapping::Linear => 0.5 * (x + y),
         Mapping::Sqrt => {
@@ -269,7 +277,7 @@ fn sorted(mut values: Vec<f64>) -> Vec<f64> {
     values
 }
 
-/// The part of the range that is nearest to each point; 1 where there is but one.
+/// The width of the part of the range that is nearest to each point; 1 where there is only one.
 fn widths(x: &[f64]) -> Vec<f64> {
     let n = x.len();
     if n == 1 {

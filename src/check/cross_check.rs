@@ -16,7 +16,7 @@ use std::ops::Range;
 
 /// Compares `values` with the reference. A NaN anywhere makes the largest error infinite.
 ///
-/// `tick` is called between comparisons and stops them by an error.
+/// It calls `tick` between comparisons, with a share of 1; an error from `tick` stops it.
 pub fn cross_check(
     table: &TablePlan,
     values: &Values,
@@ -29,13 +29,13 @@ pub fn cross_check(
     Ok(comparison.finish())
 }
 
-/// A comparison that sees a table piece by piece, in order: the same texels, the same sums and so the
-/// same error as of the whole.
+/// A comparison of a table that arrives piece by piece, in order. It compares the same texels and adds the same sums, and
+/// so finds the same error, as a comparison of the whole.
 pub(crate) struct Comparison<'a> {
     table: &'a TablePlan,
     /// The texels to compare, sorted; `None`: all of them.
     sample: Option<Vec<usize>>,
-    tally: Tally,
+    tally: ErrorTally,
 }
 
 impl<'a> Comparison<'a> {
@@ -46,12 +46,12 @@ impl<'a> Comparison<'a> {
             Check::All => None,
             Check::Sample(n) => Some(sample(&table.shape(), n)),
         };
-        let tally = Tally::new(table.unmeasured(estimate));
+        let tally = ErrorTally::new(table.unmeasured(estimate));
         Self { table, sample, tally }
     }
 
-    /// Compares the texels `piece`, whose values `value` gives, from 0. The next piece must begin where it
-    /// ends.
+    /// Compares the texels of `piece`; `value` returns the piece's values, counted from 0. The next piece must begin where
+    /// this one ends.
     pub fn add(
         &mut self,
         piece: Range<usize>,
@@ -63,41 +63,41 @@ impl<'a> Comparison<'a> {
         let (texels, all): (Vec<_>, _) = match &self.sample {
             None => (piece.clone().collect(), table.texels()),
             Some(sample) => {
-                let at = |texel| sample.partition_point(|&t| t < texel);
-                (sample[at(piece.start)..at(piece.end)].to_vec(), sample.len())
+                let first_from = |texel| sample.partition_point(|&t| t < texel);
+                (sample[first_from(piece.start)..first_from(piece.end)].to_vec(), sample.len())
             }
         };
         let share = 1.0 / all as f64;
-        let found = texels
+        let compared = texels
             .par_iter()
             .map(|&texel| {
                 let truth = reference(table, texel);
                 let values = ((texel - piece.start) * channels..).map(value);
-                let found: Vec<_> =
+                let channels: Vec<_> =
                     truth.into_iter().zip(values).map(|(truth, value)| (value, truth)).collect();
                 tick(share)?;
-                Ok((texel, found))
+                Ok((texel, channels))
             })
             .collect::<Result<Vec<_>>>()?;
-        found.into_iter().for_each(|(texel, found)| self.tally.add(table.axes(), texel, found));
+        compared.into_iter().for_each(|(texel, channels)| self.tally.add(table.axes(), texel, channels));
         Ok(())
     }
 
-    /// The error of all that was added.
+    /// The error over all texels that were added.
     pub fn finish(self) -> TableError {
         self.tally.finish()
     }
 }
 
-/// Differences from the truth as they are found: the largest, where that is, and their mean square.
-pub(crate) struct Tally {
+/// The running error of a table against the truth: the largest difference, its coordinates, and the mean square.
+pub(crate) struct ErrorTally {
     error: TableError,
     squares: f64,
     compared: usize,
 }
 
-impl Tally {
-    /// None yet; `error` says of which kind they are.
+impl ErrorTally {
+    /// An empty tally; `error` says whether differences are absolute or relative.
     pub fn new(error: TableError) -> Self {
         Self { error, squares: 0.0, compared: 0 }
     }
@@ -125,7 +125,7 @@ impl Tally {
         }
     }
 
-    /// The error of all that was added.
+    /// The error over all texels that were added.
     pub fn finish(mut self) -> TableError {
         if self.compared > 0 {
             self.error.measured_rms = Some((self.squares / self.compared as f64).sqrt());
@@ -134,9 +134,9 @@ impl Tally {
     }
 }
 
-/// The reference's channels of one texel. NaN where the reference has no value.
+/// Computes the channels of one texel by the reference; NaN where the reference has no value.
 pub fn reference(table: &TablePlan, texel: usize) -> Vec<f64> {
-    let at: BTreeMap<_, _> = table
+    let coordinates: BTreeMap<_, _> = table
         .axes()
         .iter()
         .zip(indices(&table.shape(), texel))
@@ -144,7 +144,7 @@ pub fn reference(table: &TablePlan, texel: usize) -> Vec<f64> {
         .collect();
     let mut channels = vec![0.0; table.channels().len()];
     for lobe in table.lobes() {
-        let [a, b] = reference_lobe(table.quantity(), lobe, &at);
+        let [a, b] = reference_components(table.quantity(), lobe, &coordinates);
         for (channel, [weight_a, weight_b]) in channels.iter_mut().zip(lobe.weights()) {
             *channel += weight_a * a + weight_b * b;
         }
@@ -152,9 +152,10 @@ pub fn reference(table: &TablePlan, texel: usize) -> Vec<f64> {
     channels
 }
 
-/// A lobe's part of a texel by the reference, before its weights; NaN where it has none, which no comparison calls right.
-fn reference_lobe(quantity: &Quantity, lobe: &Lobe, at: &BTreeMap<Variable, f64>) -> [f64; 2] {
-    let get = |variable| at.get(&variable).copied();
+/// Computes the components (A, B) of a lobe at a texel's coordinates by the reference; NaN where the reference has no
+/// value, which no comparison calls right.
+fn reference_components(quantity: &Quantity, lobe: &Lobe, coordinates: &BTreeMap<Variable, f64>) -> [f64; 2] {
+    let get = |variable| coordinates.get(&variable).copied();
     let Some(reference) = ReferenceLobe::new(lobe, get(Variable::Roughness)) else { return [f64::NAN; 2] };
     let theta_i = get(Variable::ThetaI).unwrap_or(0.0);
     let phi_i = get(Variable::PhiI).unwrap_or(0.0);
@@ -178,8 +179,8 @@ fn reference_lobe(quantity: &Quantity, lobe: &Lobe, at: &BTreeMap<Variable, f64>
     }
 }
 
-/// At least `n` different texels: every corner of the axes, where extremes meet, and steps of the
-/// golden section through the rest.
+/// Chooses at least `n` different texels: every corner of the axes, where extremes meet, and steps of the golden section
+/// through the rest.
 pub(crate) fn sample(shape: &[usize], n: usize) -> Vec<usize> {
     let texels: usize = shape.iter().product();
     if n == 0 {
@@ -190,9 +191,9 @@ pub(crate) fn sample(shape: &[usize], n: usize) -> Vec<usize> {
     }
     let mut chosen = BTreeSet::new();
     for corner in 0..1usize << shape.len() {
-        let at = |(k, &count): (usize, &usize)| if corner >> k & 1 == 1 { count - 1 } else { 0 };
+        let index = |(k, &count): (usize, &usize)| if corner >> k & 1 == 1 { count - 1 } else { 0 };
         chosen.insert(
-            shape.iter().enumerate().map(|axis| (at(axis), axis.1)).fold(0, |flat, (k, n)| flat * n + k),
+            shape.iter().enumerate().map(|axis| (index(axis), axis.1)).fold(0, |flat, (k, n)| flat * n + k),
         );
     }
     let stride = stride(texels);

@@ -1,4 +1,5 @@
-//! The factors of a lobe, from the albedos that the reference integrates: nothing of the evaluators' tables.
+//! The factors of a lobe by the reference: they are made of albedos that the reference integrates, and use none of the
+//! evaluators' curves.
 
 use super::reference::reference_of_albedo;
 use crate::model::compensation::{Albedo, Factor};
@@ -9,18 +10,19 @@ use std::collections::HashMap;
 use std::f64::consts::PI;
 use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
 
-/// s(μi, μe): the product of some factors at a roughness.
-pub(super) struct Product {
-    factors: Vec<(Factor, Option<Arc<Curve>>)>,
+/// The scale s(μi, μe) of a lobe: the product of its factors, with the reference's albedos.
+pub(super) struct ReferenceScale {
+    factors: Vec<(Factor, Option<Arc<ReferenceCurve>>)>,
 }
 
-impl Product {
-    /// Those of a lobe, in a row of this roughness if the table sweeps it; `None` where an albedo has no reference.
+impl ReferenceScale {
+    /// The scale of a lobe, in a row of roughness `swept` if the table has a roughness axis; `None` where an albedo has no
+    /// reference.
     pub fn new(lobe: &Lobe, swept: Option<f64>) -> Option<Self> {
         let row = swept.or(lobe.roughness());
         let with_curve = |factor: &Factor| {
             let curve = match factor.albedo() {
-                Some(albedo) => Some(Curve::new(albedo, row)?),
+                Some(albedo) => Some(ReferenceCurve::new(albedo, row)?),
                 None => None,
             };
             Some((factor.clone(), curve))
@@ -28,9 +30,9 @@ impl Product {
         Some(Self { factors: lobe.factors().iter().map(with_curve).collect::<Option<_>>()? })
     }
 
-    /// s.
+    /// The scale at (μi, μe).
     pub fn value(&self, mu_i: f64, mu_e: f64) -> f64 {
-        let one = |(factor, curve): &(Factor, Option<Arc<Curve>>)| {
+        let factor = |(factor, curve): &(Factor, Option<Arc<ReferenceCurve>>)| {
             let e = |mu: f64| curve.as_ref().map_or(f64::NAN, |curve| curve.albedo(mu));
             let e_avg = || curve.as_ref().map_or(f64::NAN, |curve| curve.mean());
             let fresnel = 0.04 + 0.96 * (1.0 - mu_e.clamp(MIN_MU, 1.0)).powi(5);
@@ -39,12 +41,12 @@ impl Product {
                 // F_ms = F_avg² E_avg / (1 − F_avg (1 − E_avg)).
                 Factor::Missing { f_avg, .. } => {
                     let e_avg = e_avg();
-                    let missing = 1.0 - e_avg;
-                    if missing <= 0.0 {
+                    let mean_loss = 1.0 - e_avg;
+                    if mean_loss <= 0.0 {
                         return 0.0;
                     }
-                    let f_ms = f_avg.powi(2) * e_avg / (1.0 - f_avg * missing);
-                    (1.0 - e(mu_i)) * (1.0 - e(mu_e)) / missing * f_ms
+                    let f_ms = f_avg.powi(2) * e_avg / (1.0 - f_avg * mean_loss);
+                    (1.0 - e(mu_i)) * (1.0 - e(mu_e)) / mean_loss * f_ms
                 }
                 // Turquin 2019: 1 + F0 (1 − E)/E.
                 Factor::Restored { f0, .. } => 1.0 + f0 * (1.0 / e(mu_e) - 1.0),
@@ -54,10 +56,10 @@ impl Product {
                 Factor::BelowSheen { most, .. } => 1.0 - most * f64::max(e(mu_i), e(mu_e)).min(1.0),
             }
         };
-        self.factors.iter().map(one).product()
+        self.factors.iter().map(factor).product()
     }
 
-    /// ρ_dh of a lobe times s, with ωi fixed, or ωe.
+    /// Integrates ρ_dh of a lobe times s, with ωi or ωe fixed.
     pub fn rho_dh(
         &self,
         lobe: &dyn Reference,
@@ -72,7 +74,7 @@ impl Product {
         }
     }
 
-    /// ρ_hh of that.
+    /// Integrates ρ_hh of a lobe times s.
     pub fn rho_hh(&self, lobe: &dyn Reference, setting: &Setting) -> [f64; 2] {
         let alphas = self.factors.iter().filter_map(|(_, curve)| Some(curve.as_ref()?.setting.alpha()));
         let alpha = alphas.fold(setting.alpha(), f64::max);
@@ -80,27 +82,28 @@ impl Product {
     }
 }
 
-/// E(μ) by octaves of μ, each a polynomial through as many of its values as 1e-11 takes, when it is first asked for.
-struct Curve {
+/// The albedo E(μ) by octaves of μ. Each octave is a polynomial through as many values as 1e-11 takes, computed when it is
+/// first asked for.
+struct ReferenceCurve {
     reference: &'static dyn Reference,
     setting: Setting,
     octaves: [OnceLock<[f64; DEGREE + 1]>; OCTAVES],
     mean: OnceLock<f64>,
 }
 
-/// From 2⁻²⁴ to 1.
+/// The number of octaves, from 2⁻²⁴ to 1.
 const OCTAVES: usize = 24;
-/// E has branch points near ±iα and at 0: seen from an octave they are 5.8 of its ellipses away or more, and
+/// The degree of an octave's polynomial. E has branch points near ±iα and at 0: seen from an octave they are 5.8 of its ellipses away or more, and
 /// 5.8⁻¹⁵ = 3e-12.
 const DEGREE: usize = 15;
-/// How many curves are kept.
+/// The number of curves that are kept.
 const CURVES_KEPT: usize = 512;
 
-/// A model, the bits of its measure of a roughness, and those of its parameters.
+/// The key of a curve: a model, the bits of its measure of a roughness, and those of its parameters.
 type Key = (&'static str, u64, [u64; 8]);
-static CURVES: LazyLock<Mutex<HashMap<Key, Arc<Curve>>>> = LazyLock::new(Mutex::default);
+static CURVES: LazyLock<Mutex<HashMap<Key, Arc<ReferenceCurve>>>> = LazyLock::new(Mutex::default);
 
-impl Curve {
+impl ReferenceCurve {
     fn new(albedo: &Albedo, row: Option<f64>) -> Option<Arc<Self>> {
         let (reference, setting) = reference_of_albedo(albedo, row)?;
         let key = (albedo.model.name, setting.alpha().to_bits(), albedo.parameters.map(f64::to_bits));
@@ -115,10 +118,12 @@ impl Curve {
         Some(curves.entry(key).or_insert_with(new).clone())
     }
 
+    /// E(μ) by the reference's integral.
     fn exact(&self, mu: f64) -> f64 {
         self.reference.rho_dh(mu, &self.setting).into_iter().sum()
     }
 
+    /// E(μ) by the polynomial of its octave.
     fn albedo(&self, mu: f64) -> f64 {
         let mu = mu.clamp(MIN_MU, 1.0);
         let octave = ((-mu.log2()).floor() as usize).min(OCTAVES - 1);
@@ -142,6 +147,7 @@ impl Curve {
         above / below
     }
 
+    /// The mean albedo E_avg.
     fn mean(&self) -> f64 {
         *self.mean.get_or_init(|| mean_of_rho_dh(|mu| [self.albedo(mu), 0.0], self.setting.alpha())[0])
     }
@@ -152,13 +158,13 @@ mod tests {
     use super::*;
     use crate::model;
 
-    /// What is between the points of an octave is as good as the reference's integrals.
+    /// An octave is as good between its points as the reference's integrals.
     #[test]
     fn octaves_hold_to_1e_10() {
         let model = model::find("ggx-smith-correlated-none").unwrap();
         for alpha in [1e-4, 0.01, 0.3, 1.0] {
             let albedo = Albedo { model, roughness: Some(f64::sqrt(alpha)), parameters: model.defaults() };
-            let curve = Curve::new(&albedo, None).unwrap();
+            let curve = ReferenceCurve::new(&albedo, None).unwrap();
             for mu in [1e-7, 3e-5, 2.1e-3, 0.0123, 0.26, 0.71, 0.987] {
                 let error = (curve.albedo(mu) - curve.exact(mu)).abs();
                 assert!(error <= 1e-10, "α = {alpha}, μ = {mu}: {error:e}");

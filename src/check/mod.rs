@@ -1,4 +1,4 @@
-//! What a table's values are worth: against the f64 reference, and between the samples.
+//! Measures the error of a table's values: against the f64 reference, and between the samples.
 
 pub(crate) mod bilinear;
 mod cross_check;
@@ -11,7 +11,7 @@ pub use crate::base::precision::VALUE_FLOOR;
 pub use crate::table::Check;
 #[cfg(feature = "batch")]
 pub(crate) use cross_check::Comparison;
-pub(crate) use cross_check::{Tally, sample};
+pub(crate) use cross_check::{ErrorTally, sample};
 pub use cross_check::{cross_check, reference};
 pub(crate) use reference::{ReferenceLobe, reference_angles, reference_parameters};
 pub use reference::{reference_of_model, register_reference};

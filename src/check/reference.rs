@@ -1,10 +1,10 @@
 //! The f64 reference of a model, found by its name or by those of its parts, and of a lobe, which has a roughness,
 //! parameters and factors.
 //!
-//! The reference is a crate of its own and knows nothing of ours: what is handed to it here is names and numbers as
-//! recipes give them, before anything of ours has turned them into its own measures.
+//! The reference is a crate of its own that imports none of ours. It gets names and numbers as recipes give them, before
+//! this crate has turned them into its own measures.
 
-use super::factor::Product;
+use super::factor::ReferenceScale;
 use crate::base::angles;
 use crate::base::error::{Error, Result};
 use crate::model::Model;
@@ -15,10 +15,10 @@ use crate::table::quantity::FixedDirection;
 use gonio_reference::{Angles, Factors, Measure, Reference, Refused, Setting};
 use std::sync::{PoisonError, RwLock};
 
-/// References of an embedder's own models, by the models' names.
+/// The references of an embedder's models, by the models' names.
 static REGISTERED: RwLock<Vec<(&'static str, &'static dyn Reference)>> = RwLock::new(Vec::new());
 
-/// Makes the reference of an embedder's own model known by the model's name; from then on checks compare with it.
+/// Registers the reference of an embedder's model by the model's name; from then on checks compare with it.
 ///
 /// # Errors
 /// When the model has a reference already.
@@ -59,65 +59,65 @@ pub(crate) fn reference_angles(pair: &angles::Angles) -> Angles {
     Angles { theta_i, theta_e, delta_phi: pair.delta_phi(), phi_i }
 }
 
-/// A lobe by the reference, before its weights.
+/// A lobe as the reference evaluates it, without its weights.
 pub(crate) struct ReferenceLobe {
     reference: &'static dyn Reference,
     setting: Setting,
-    /// What multiplies it, if anything does.
-    product: Option<Product>,
+    /// The product of its factors, if it has any.
+    scale: Option<ReferenceScale>,
 }
 
 impl ReferenceLobe {
-    /// A lobe at its own roughness, or at the one of a row of a table that sweeps it. `None` where its model, or one that
-    /// a factor is made of, has no reference, or the reference refuses the roughness or a parameter.
+    /// The lobe at its own roughness, or at `swept`, that of a table's row. `None` where its model, or one that a factor is
+    /// made of, has no reference, or the reference refuses the roughness or a parameter.
     pub fn new(lobe: &Lobe, swept: Option<f64>) -> Option<Self> {
         let reference = reference_of_model(lobe.model())?;
         let parameters = reference_parameters(lobe.model(), &lobe.parameters()).ok()?;
         let setting = Setting::new(reference.measure(), swept.or(lobe.roughness()), &parameters).ok()?;
-        let product = match lobe.factors()[..] {
+        let scale = match lobe.factors()[..] {
             [] => None,
-            _ => Some(Product::new(lobe, swept)?),
+            _ => Some(ReferenceScale::new(lobe, swept)?),
         };
-        Some(Self { reference, setting, product })
+        Some(Self { reference, setting, scale })
     }
 
-    /// f, sr⁻¹; `None` of a delta.
+    /// Evaluates f, sr⁻¹; `None` of a delta.
     pub fn brdf(&self, angles: &Angles) -> Option<[f64; 2]> {
         let f = self.reference.brdf(angles, &self.setting)?;
-        let Some(product) = &self.product else { return Some(f) };
-        let factor = product.value(angles.theta_i.cos(), angles.theta_e.cos());
+        let Some(scale) = &self.scale else { return Some(f) };
+        let factor = scale.value(angles.theta_i.cos(), angles.theta_e.cos());
         Some(f.map(|f| f * factor))
     }
 
-    /// ρ_dh at a direction of incidence (μ, φ), or of exitance.
+    /// Integrates ρ_dh at a fixed direction (μ, φ) of incidence or of exitance.
     pub fn rho_dh(&self, mu: f64, phi: f64, fixed: FixedDirection) -> [f64; 2] {
-        match &self.product {
+        match &self.scale {
             None => self.reference.rho_dh_at(mu, phi, &self.setting),
-            Some(product) => product.rho_dh(self.reference, mu, &self.setting, fixed),
+            Some(scale) => scale.rho_dh(self.reference, mu, &self.setting, fixed),
         }
     }
 
-    /// ρ_hh.
+    /// Integrates ρ_hh.
     pub fn rho_hh(&self) -> [f64; 2] {
-        match &self.product {
+        match &self.scale {
             None => self.reference.rho_hh(&self.setting),
-            Some(product) => product.rho_hh(self.reference, &self.setting),
+            Some(scale) => scale.rho_hh(self.reference, &self.setting),
         }
     }
 
-    /// About how wide the lobe is, rad: its own measure of the roughness; `None` of a model that takes none.
+    /// The approximate width of the lobe, rad: its model's measure of the roughness; `None` of a model that takes none.
     pub fn width(&self) -> Option<f64> {
         (self.reference.measure() != Measure::None).then(|| self.setting.alpha())
     }
 
-    /// What a microfacet lobe is made of; `None` of any other.
+    /// The factors D, F and G of a microfacet lobe; `None` of any other.
     #[cfg(feature = "cli")]
     pub fn factors(&self, angles: &Angles) -> Option<Factors> {
         self.reference.factors(angles, &self.setting)
     }
 }
 
-/// The reference of an albedo that a factor is made of, in a row of this roughness; `None` as of a lobe.
+/// The reference of an albedo that a factor is made of, in a row of roughness `row`; `None` where it has none.
 pub(super) fn reference_of_albedo(
     albedo: &Albedo,
     row: Option<f64>,
@@ -154,7 +154,7 @@ mod tests {
         }
     }
 
-    /// What is no roughness has no reference, so that no comparison calls it right.
+    /// A number that is no roughness has no reference, so that no comparison calls it right.
     #[test]
     fn a_wrong_roughness_has_no_reference() {
         let ggx = model::find("ggx").unwrap();

@@ -6,7 +6,7 @@ use crate::base::error::{Error, Result};
 use crate::base::timings::Stopwatch;
 use crate::base::timings::Timings;
 use crate::base::words::alternatives;
-use crate::batch::{Baked, Options, Streaming, bake_set};
+use crate::batch::{Baked, SetOptions, Streaming, bake_set};
 use crate::check::Check;
 use crate::cli::watch::Watch;
 use crate::cli::{HEADING, print, print_json, tell, warn};
@@ -122,7 +122,8 @@ pub fn run(args: &Args) -> Result<()> {
     let watch = Watch::new(2 * plan.tables.len());
     let mut formats = args.format.clone();
     formats.dedup();
-    let options = Options { formats, target: &IDENTITY, check: args.check, streaming: Streaming::default() };
+    let options =
+        SetOptions { formats, target: &IDENTITY, check: args.check, streaming: Streaming::default() };
     let baked = bake_set(&plan, &args.scene, &evaluator, out, &options, stages, &watch);
     watch.finish();
     let baked = baked?;

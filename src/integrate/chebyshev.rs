@@ -1,69 +1,69 @@
-//! A table of integrals is a smooth function of (μ, roughness): they are done at a few *sources* along each axis,
-//! Chebyshev points, and polynomials carry them to the texels. Two products of matrices take the place of
-//! an integral each.
+//! Interpolates a table of integrals along its axes. The table is a smooth function of (μ, roughness), so the integrals
+//! are computed at a few *sources* along each axis, Chebyshev points, and polynomials carry them to the texels: two
+//! matrix products take the place of an integral for each texel.
 //!
 //! A polynomial is limited by the branch points of ρ off the real axis: at μ = ±iα and so, along roughness
 //! r = √α, at √(±iμ) (see [`Branches`]); and at 0, where ρ has logarithms of μ and of α. In x = asinh(value/δ),
 //! linear up to δ and logarithmic beyond, they keep away from the range by up to π/2 and π/4. With n Chebyshev
 //! points the error falls as e^(−n q), where cosh q is the half axis of the largest ellipse with foci at the
-//! range's ends that holds no branch point (Trefethen 2013, theorem 8.2): so many points as
+//! range's ends that holds no branch point (Trefethen 2013, theorem 8.2): n is the least with
 //!     strength · e^(−n q) ≤ tolerance/8
-//! asks for, with δ the best of a few. Values so near 0 that to reach them would take more points than there are of
-//! them are sources themselves.
+//! for the best of a few δ. The smallest values of an axis are sources themselves where a polynomial that reaches
+//! them would take more points than there are such values.
 
 use crate::base::tolerance::CHEBYSHEV_SHARE;
 use crate::model::Branches;
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-/// An axis whose integrals are done elsewhere.
-pub(crate) struct Spread {
-    /// Where: μ, or α.
+/// An axis whose values are interpolated between integrals at a few sources.
+pub(crate) struct InterpolatedAxis {
+    /// The μ, or α, of the integrals.
     pub sources: Vec<f64>,
-    /// What each value of the axis takes of each source.
+    /// The interpolation weights: a row for each value of the axis, a column for each source.
     pub matrix: Matrix,
 }
 
-/// A matrix, row by row.
+/// A matrix, stored row by row.
 pub(crate) struct Matrix {
     pub rows: usize,
     pub columns: usize,
     pub values: Vec<f64>,
 }
 
-/// More sources than this share of the values do not pay.
-const PAYS: f64 = 0.7;
-/// Below it, roughness is the mirror's (α = 1e-12), and to interpolate from there means nothing.
+/// The largest number of sources, as a share of the values, at which interpolation pays.
+const MAX_SHARE: f64 = 0.7;
+/// The least value to interpolate from: below it, the roughness is the mirror's (α = 1e-12).
 const SMALLEST: f64 = 1e-6;
-/// Branch points closer together than this ratio are as good as one.
+/// The ratio of branch points below which two count as one.
 const RATIO: f64 = 1.4;
-/// Ellipses larger than e^q have other things in them.
-const MOST_Q: f64 = 1.5;
-/// How many of the smallest values may be sources themselves.
+/// The largest q that is used: larger ellipses may hold other singularities.
+const MAX_Q: f64 = 1.5;
+/// The numbers of smallest values that may be sources themselves.
 const KEPT: [usize; 9] = [0, 1, 2, 3, 4, 6, 8, 12, 16];
-/// The largest matrix, and the most results between two of them: with 8 and 16 bytes each, 32 and 64 MiB, which
-/// every device binds.
-pub(crate) const LARGEST: usize = 1 << 22;
-/// The longest axis that an identity carries over, where only the other one is spread.
+/// The largest number of matrix entries, and of results between two matrices: with 8 and 16 bytes each, 32 and 64 MiB,
+/// which every device binds.
+pub(crate) const MAX_ENTRIES: usize = 1 << 22;
+/// The longest axis that takes an identity matrix, where only the other one is interpolated.
 const LONGEST_IDENTITY: usize = 512;
 
-impl Spread {
-    /// Along roughness, for lobes seen at `mus`; `None` where it does not pay.
+impl InterpolatedAxis {
+    /// Interpolates along roughness, for lobes seen at `mus`; `None` where that does not pay.
     pub fn along_roughness(alphas: &[f64], mus: &[f64], branches: Branches, tolerance: f64) -> Option<Self> {
         let roughness: Vec<_> = alphas.iter().map(|alpha| alpha.sqrt()).collect();
         let points =
             thinned(mus).map(|mu| [FRAC_1_SQRT_2 * mu.sqrt(); 2]).chain([[0.0; 2]]).collect::<Vec<_>>();
-        let spread = Self::new(&roughness, &points, branches.strength, tolerance)?;
-        Some(Self { sources: spread.sources.iter().map(|r| r * r).collect(), ..spread })
+        let axis = Self::new(&roughness, &points, branches.strength, tolerance)?;
+        Some(Self { sources: axis.sources.iter().map(|r| r * r).collect(), ..axis })
     }
 
-    /// Along μ, for lobes of `alphas`; `None` where it does not pay.
+    /// Interpolates along μ, for lobes of `alphas`; `None` where that does not pay.
     pub fn along_mu(mus: &[f64], alphas: &[f64], branches: Branches, tolerance: f64) -> Option<Self> {
         let points = thinned(alphas).map(|alpha| [0.0, alpha]).chain([[0.0; 2]]).collect::<Vec<_>>();
         Self::new(mus, &points, branches.strength, tolerance)
     }
 
-    /// Every value its own source, on an axis that is not too long for that.
+    /// Makes every value its own source; `None` on an axis that is too long for that.
     pub fn identity(values: &[f64]) -> Option<Self> {
         let n = values.len();
         let unit = (0..n * n).map(|k| if k % (n + 1) == 0 { 1.0 } else { 0.0 });
@@ -80,20 +80,14 @@ impl Spread {
         let largest = *sorted.last()?;
         let first = sorted.partition_point(|&value| value < SMALLEST);
         let splits = KEPT.iter().map(|k| first + k).filter(|&k| k < sorted.len());
-        let of = |kept: usize| {
-            (
-                kept,
-                Polynomial::new(
-                    [sorted[kept], largest],
-                    points,
-                    (strength / (CHEBYSHEV_SHARE * tolerance)).ln(),
-                ),
-            )
-        };
-        let (kept, polynomial) = splits.map(of).min_by_key(|(kept, p)| kept + p.n)?;
+        let decay = (strength / (CHEBYSHEV_SHARE * tolerance)).ln();
+        let polynomial = |kept: usize| (kept, Polynomial::new([sorted[kept], largest], points, decay));
+        let (kept, polynomial) = splits.map(polynomial).min_by_key(|(kept, p)| kept + p.n)?;
         let kept = &sorted[..kept];
         let columns = kept.len() + polynomial.n;
-        if columns as f64 > PAYS * values.len() as f64 || values.len().saturating_mul(columns) > LARGEST {
+        if columns as f64 > MAX_SHARE * values.len() as f64
+            || values.len().saturating_mul(columns) > MAX_ENTRIES
+        {
             return None;
         }
         let row = |&value: &f64| {
@@ -111,12 +105,12 @@ impl Spread {
 }
 
 impl Matrix {
-    /// One row.
+    /// Makes a matrix of one row.
     pub fn row(values: Vec<f64>) -> Self {
         Self { rows: 1, columns: values.len(), values }
     }
 
-    /// out[c, u] = Σ M[c, n] raw[u, n]: transposed, so that a second product does the other axis.
+    /// Computes out[c, u] = Σ M[c, n] raw[u, n], transposed, so that a second product interpolates the other axis.
     pub fn apply(&self, raw: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let sum = |row: &[f64], raw: &[[f64; 2]]| {
             row.iter().zip(raw).fold([0.0; 2], |[a, b], (m, [x, y])| [a + m * x, b + m * y])
@@ -126,7 +120,7 @@ impl Matrix {
     }
 }
 
-/// Interpolation by a polynomial in asinh(value/δ).
+/// An interpolating polynomial in asinh(value/δ) through n Chebyshev points.
 struct Polynomial {
     n: usize,
     delta: f64,
@@ -135,10 +129,10 @@ struct Polynomial {
 }
 
 impl Polynomial {
-    /// With as many points as bring e^(−n q) to e^(−decay).
+    /// The polynomial with as many points as bring e^(−n q) down to e^(−decay), for the best δ.
     fn new([low, high]: [f64; 2], points: &[[f64; 2]], decay: f64) -> Self {
         const DELTAS: i32 = 9;
-        let of = |k: i32| {
+        let candidate = |k: i32| {
             let delta = 0.5 * low * (4.0 * high / low).powf(f64::from(k) / f64::from(DELTAS - 1));
             let [a, b] = [low, high].map(|value| (value / delta).asinh());
             let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
@@ -147,31 +141,34 @@ impl Polynomial {
                 let (x, y) = ((x - middle) / half, y / half);
                 (0.5 * ((x - 1.0).hypot(y) + (x + 1.0).hypot(y))).max(1.0).acosh()
             });
-            let q = q.fold(MOST_Q, f64::min);
-            // As good as never where q is 0.
+            let q = q.fold(MAX_Q, f64::min);
+            // Where q is 0, no number of points is enough.
             let n = if half > 0.0 { 1 + (decay.max(0.0) / q).ceil().min(1e9) as usize } else { 1 };
             Self { n, delta, middle, half }
         };
-        (1..DELTAS).map(of).fold(of(0), |best, other| if other.n < best.n { other } else { best })
+        (1..DELTAS)
+            .map(candidate)
+            .fold(candidate(0), |best, other| if other.n < best.n { other } else { best })
     }
 
-    /// An angle whose cosine is a Chebyshev point, and their sequence rises.
+    /// The angle whose cosine is the k-th Chebyshev point, in rising order.
     fn angle(&self, k: usize) -> f64 {
         PI * (self.n - k) as f64 / self.n as f64 - 0.5 * PI / self.n as f64
     }
 
+    /// The value at the k-th Chebyshev point.
     fn source(&self, k: usize) -> f64 {
         self.delta * (self.middle + self.half * self.angle(k).cos()).sinh()
     }
 
-    /// The barycentric formula (Berrut & Trefethen 2004, eq. 4.2, 5.3).
+    /// Fills in the weights of the points at a value, by the barycentric formula (Berrut & Trefethen 2004, eq. 4.2, 5.3).
     fn weigh(&self, value: f64, weights: &mut [f64]) {
         let x = ((value / self.delta).asinh() - self.middle) / self.half;
         let mut sum = 0.0;
         for k in 0..self.n {
             let angle = self.angle(k);
             let distance = x - angle.cos();
-            // One point, or on one: that is the value.
+            // The value is a point, or there is only one point.
             if distance == 0.0 || distance.is_nan() {
                 weights.fill(0.0);
                 weights[k] = 1.0;
@@ -184,13 +181,13 @@ impl Polynomial {
     }
 }
 
-/// asinh of a complex number with Im ≥ 0: from its distances to the branch points ±i.
+/// Computes asinh of a complex number with Im ≥ 0, from its distances to the branch points ±i.
 fn asinh([re, im]: [f64; 2]) -> [f64; 2] {
     let (near, far) = (re.hypot(im - 1.0), re.hypot(im + 1.0));
     [(0.5 * (near + far)).max(1.0).acosh(), (0.5 * (far - near)).clamp(-1.0, 1.0).asin()]
 }
 
-/// Positive values, without those that are nearly another.
+/// The positive values, sorted, without those within [`RATIO`] of the one before.
 fn thinned(values: &[f64]) -> impl Iterator<Item = f64> {
     let mut sorted: Vec<_> = values.iter().copied().filter(|&value| value > 0.0).collect();
     sorted.sort_by(f64::total_cmp);
@@ -207,10 +204,10 @@ fn thinned(values: &[f64]) -> impl Iterator<Item = f64> {
 mod tests {
     use super::*;
     use crate::base::half_angle::MU_MIN;
-    use crate::integrate::slope_rule::SlopeWork;
+    use crate::integrate::slope_rule::SlopeRule;
     use crate::model::{ALPHA_MIN_INTEGRAL, Integral, MICROFACETS, Model, Slopes};
 
-    /// Roughness and μ of tables that the strength was not measured on … or was.
+    /// The roughness and μ of tables, some of which the strength was not measured on.
     fn tables() -> Vec<(&'static str, Vec<f64>, Vec<f64>)> {
         let centers = |n: usize| (0..n).map(|k| (k as f64 + 0.5) / n as f64).collect::<Vec<_>>();
         let nodes = |n: usize, [a, b]: [f64; 2]| -> Vec<f64> {
@@ -251,19 +248,19 @@ mod tests {
         }
     }
 
-    /// Row by row, to 1e-10.
+    /// Integrates (A, B) row by row to 1e-10.
     fn exact(slopes: &'static Slopes, alphas: &[f64], mus: &[f64]) -> Vec<[f64; 2]> {
         let settings: Vec<_> = alphas.iter().map(|&alpha| alpha.into()).collect();
-        let work = SlopeWork::new(slopes, mus.to_vec(), &settings, 1e-10, 0);
-        let map = slopes.map(work.tolerance);
-        let integral = |at: usize| {
-            let (row, column) = (at / mus.len(), at % mus.len());
+        let rule = SlopeRule::new(slopes, mus.to_vec(), &settings, 1e-10, 0);
+        let map = slopes.map(rule.tolerance);
+        let integral = |texel: usize| {
+            let (row, column) = (texel / mus.len(), texel % mus.len());
             let (alpha, mu) = (alphas[row], mus[column]);
             if alpha < ALPHA_MIN_INTEGRAL {
                 return (slopes.mirror_limit)(mu, &settings[row]);
             }
             let mut sum = [0.0; 2];
-            for (azimuths, nodes) in work.sides(row, column) {
+            for (azimuths, nodes) in rule.sides(row, column) {
                 for &[c, t_max, inverse, weight] in azimuths {
                     let end = (map.end)(t_max, &settings[row]);
                     for node in nodes {
@@ -278,16 +275,16 @@ mod tests {
         (0..alphas.len() * mus.len()).into_par_iter().map(integral).collect()
     }
 
-    /// The largest error of some texels of a table, and how many sources its axes have.
+    /// The largest error of some texels of a table, and the number of sources of each axis.
     fn error(model: &Model, roughness: &[f64], mus: &[f64], tolerance: f64) -> Option<(f64, [usize; 2])> {
         let slopes = slopes(model)?;
         let branches = slopes.branches?;
         let alphas: Vec<_> = roughness.iter().map(|r| r * r).collect();
-        let rows = Spread::along_roughness(&alphas, mus, branches, tolerance);
-        let columns = Spread::along_mu(mus, &alphas, branches, tolerance);
+        let rows = InterpolatedAxis::along_roughness(&alphas, mus, branches, tolerance);
+        let columns = InterpolatedAxis::along_mu(mus, &alphas, branches, tolerance);
         let counts = [&rows, &columns].map(|s| s.as_ref().map_or(0, |s| s.sources.len()));
-        let rows = rows.or_else(|| Spread::identity(&alphas)).unwrap();
-        let columns = columns.or_else(|| Spread::identity(mus)).unwrap();
+        let rows = rows.or_else(|| InterpolatedAxis::identity(&alphas)).unwrap();
+        let columns = columns.or_else(|| InterpolatedAxis::identity(mus)).unwrap();
         // Both ends and some between.
         let some = |n: usize| {
             (0..n).filter(|k| *k < 6 || k + 4 >= n || k % (n / 12).max(1) == 0).collect::<Vec<_>>()
@@ -302,15 +299,16 @@ mod tests {
                 .collect(),
         };
         let raw = exact(slopes, &rows.sources, &columns.sources);
-        let spread =
+        let interpolated =
             pick(&rows.matrix, &picked_rows).apply(&pick(&columns.matrix, &picked_columns).apply(&raw));
-        let of = |values: &[f64], picked: &[usize]| picked.iter().map(|&k| values[k]).collect::<Vec<_>>();
-        let exact = exact(slopes, &of(&alphas, &picked_rows), &of(mus, &picked_columns));
+        let values_at =
+            |values: &[f64], picked: &[usize]| picked.iter().map(|&k| values[k]).collect::<Vec<_>>();
+        let exact = exact(slopes, &values_at(&alphas, &picked_rows), &values_at(mus, &picked_columns));
         let difference = |(a, b): (&[f64; 2], &[f64; 2])| (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
-        Some((spread.iter().zip(&exact).map(difference).fold(0.0, f64::max), counts))
+        Some((interpolated.iter().zip(&exact).map(difference).fold(0.0, f64::max), counts))
     }
 
-    /// What interpolation alone is off by stays below an eighth of the tolerance.
+    /// The error of interpolation alone stays below an eighth of the tolerance.
     #[test]
     fn interpolation_keeps_its_share() {
         for model in MICROFACETS.iter() {
@@ -329,11 +327,11 @@ mod tests {
         }
     }
 
-    /// `cargo test --release -- --ignored print_the_error_of_spreading --nocapture`: how much of its share each table
-    /// uses, from which the strength of the branch points was chosen.
+    /// `cargo test --release -- --ignored print_the_error_of_interpolation --nocapture` prints the share of its
+    /// budget that each table uses, from which the strength of the branch points was chosen.
     #[test]
     #[ignore = "takes minutes; prints"]
-    fn print_the_error_of_spreading() {
+    fn print_the_error_of_interpolation() {
         for model in MICROFACETS.iter() {
             for (name, roughness, mus) in tables() {
                 for decade in 1..=8 {

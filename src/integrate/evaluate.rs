@@ -1,24 +1,25 @@
 //! Evaluates the integrals of a lobe in f64 on the host, on all cores.
 
 use super::chebyshev::Matrix;
-use super::direction_rule::Texel;
-use super::rule_set::{Inner, Work};
+use super::direction_rule::DirectionSum;
+use super::rule_set::{InnerRule, RuleSet};
 use crate::model::ALPHA_MIN_INTEGRAL;
 use crate::model::directions::Sample;
 use crate::model::lobe::Lobe;
 use rayon::prelude::*;
-/// (A, B) of each texel: `outer` makes them of the inner integrals.
+
+/// Integrates (A, B) of each texel: the matrices `outer` sum up the inner integrals.
 ///
-/// `tick` is called as work is done, with a share of 1, and stops it by returning an error.
+/// It calls `tick` as it goes on, with a share of 1; an error from `tick` stops it.
 pub(crate) fn texels<E: Send>(
-    work: &Work,
-    inner: &Inner,
+    rules: &RuleSet,
+    inner: &InnerRule,
     outer: &[Matrix],
     lobe: &Lobe,
     tick: &(impl Fn(f64) -> Result<(), E> + Sync),
 ) -> Result<Vec<[f64; 2]>, E> {
-    let count = work.alphas.len() * inner.count();
-    let raw = |at: usize| integrate(work, inner, lobe, at / inner.count(), at % inner.count());
+    let count = rules.alphas.len() * inner.count();
+    let raw = |index: usize| integrate(rules, inner, lobe, index / inner.count(), index % inner.count());
     if let [sum] = outer {
         let texels = count / sum.columns;
         let texel = |texel: usize| {
@@ -30,30 +31,30 @@ pub(crate) fn texels<E: Send>(
         };
         return (0..texels).into_par_iter().map(texel).collect();
     }
-    let one = |at: usize| {
+    let counted = |index: usize| {
         tick(1.0 / count as f64)?;
-        Ok(raw(at))
+        Ok(raw(index))
     };
-    let raw = (0..count).into_par_iter().map(one).collect::<Result<Vec<_>, E>>()?;
+    let raw = (0..count).into_par_iter().map(counted).collect::<Result<Vec<_>, E>>()?;
     let texels = outer.iter().fold(raw, |raw, matrix| matrix.apply(&raw));
-    let raised = |x: f64| if x < 0.0 && x >= -work.below_zero() { 0.0 } else { x };
+    let raised = |x: f64| if x < 0.0 && x >= -rules.below_zero() { 0.0 } else { x };
     Ok(texels.into_iter().map(|sum| sum.map(raised)).collect())
 }
 
 /// The inner integral `k` of a row of α.
-fn integrate(work: &Work, inner: &Inner, lobe: &Lobe, row: usize, k: usize) -> [f64; 2] {
-    let setting = &lobe.setting(work.alphas[row]);
+fn integrate(rules: &RuleSet, inner: &InnerRule, lobe: &Lobe, row: usize, k: usize) -> [f64; 2] {
+    let setting = &lobe.setting(rules.alphas[row]);
     let alpha = setting.alpha;
     let mut sum = [0.0; 2];
     let mut add = |weight: f64, [a, b]: [f64; 2]| sum = [sum[0] + weight * a, sum[1] + weight * b];
     match inner {
-        Inner::Slopes(work) if alpha < ALPHA_MIN_INTEGRAL => {
-            return (work.slopes.mirror_limit)(work.mus[k], setting);
+        InnerRule::Slopes(rule) if alpha < ALPHA_MIN_INTEGRAL => {
+            return (rule.slopes.mirror_limit)(rule.mus[k], setting);
         }
-        Inner::Slopes(work) => {
-            let mu = work.mus[k];
-            let map = work.slopes.map(work.tolerance);
-            for (azimuths, nodes) in work.sides(row, k) {
+        InnerRule::Slopes(rule) => {
+            let mu = rule.mus[k];
+            let map = rule.slopes.map(rule.tolerance);
+            for (azimuths, nodes) in rule.sides(row, k) {
                 for &[c, t_max, t_max_inverse, weight] in azimuths {
                     let end = (map.end)(t_max, setting);
                     for node in nodes {
@@ -63,25 +64,25 @@ fn integrate(work: &Work, inner: &Inner, lobe: &Lobe, row: usize, k: usize) -> [
                 }
             }
         }
-        Inner::Samples(work) if alpha < ALPHA_MIN_INTEGRAL => {
-            let mu = work.mus[k / work.chunks];
-            return (work.mirror_limit)(mu, setting).map(|f| f * work.chunk as f64);
+        InnerRule::Samples(rule) if alpha < ALPHA_MIN_INTEGRAL => {
+            let mu = rule.mus[k / rule.chunks];
+            return (rule.mirror_limit)(mu, setting).map(|f| f * rule.chunk as f64);
         }
-        Inner::Samples(work) => return work.sum(row, k, setting),
-        Inner::Product { pairs, azimuths } => {
+        InnerRule::Samples(rule) => return rule.sum(row, k, setting),
+        InnerRule::Product { pairs, azimuths } => {
             for azimuth in azimuths {
                 add(pairs[k].weight * azimuth.weight, (lobe.model().lobe)(&pairs[k], azimuth, setting));
             }
         }
-        Inner::Mapped(work) => match work.texel(row * work.fixed.len() + k) {
-            Texel::Limit(limit) => return limit,
-            Texel::Samples(samples) => {
+        InnerRule::Directions(rule) => match rule.integral(row * rule.fixed.len() + k) {
+            DirectionSum::Limit(limit) => return limit,
+            DirectionSum::Samples(samples) => {
                 for Sample { pair, azimuth, weight } in &samples {
                     add(*weight, (lobe.model().lobe)(pair, azimuth, setting));
                 }
             }
         },
-        Inner::Analytic { directional, mus } => return directional(mus[k], setting),
+        InnerRule::ClosedForm { directional, mus } => return directional(mus[k], setting),
     }
     sum
 }

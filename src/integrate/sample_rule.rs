@@ -1,34 +1,34 @@
-//! Draws for the rules that sample: tabulated for all texels alike, or each texel's own.
+//! Random and quasi-random draws of the sampling rules: one table for all texels, or a sequence for each texel.
 
 use crate::model::parameters::Setting;
 use crate::table::rule::CHUNK;
 use std::f64::consts::PI;
 
-/// How a microfacet normal is drawn.
+/// The distribution and the sequence that a microfacet normal is drawn from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Sampler {
-    /// Of the normals' distribution, by Hammersley's points.
+    /// The distribution of normals, by Hammersley's points.
     Ndf,
-    /// Of the visible normals, by Hammersley's points.
+    /// The visible normals, by Hammersley's points.
     Vndf,
-    /// Of the visible normals, at random.
+    /// The visible normals, at random.
     Random,
 }
 
 /// The inner integrals by sampling: one for each (α, μ, chunk).
-pub(crate) struct SampleWork {
+pub(crate) struct SampleRule {
     pub sampler: Sampler,
     pub sampling: &'static crate::model::Sampling,
     pub mirror_limit: fn(f64, &Setting) -> [f64; 2],
     pub mus: Vec<f64>,
-    /// Samples of a chunk.
+    /// The number of samples of a chunk.
     pub chunk: usize,
     pub chunks: usize,
-    /// What the samplers take two numbers for, sample by sample; none where they are random.
+    /// The two numbers of each sample; empty where samples are random.
     pub draws: Vec<[f64; 2]>,
 }
 
-impl SampleWork {
+impl SampleRule {
     pub fn new(
         sampler: Sampler,
         slopes: &'static crate::model::Slopes,
@@ -46,7 +46,7 @@ impl SampleWork {
         Self { sampler, sampling, mirror_limit, mus, chunk, chunks: samples / chunk, draws }
     }
 
-    /// The sum over a chunk, in f64.
+    /// The sum over a chunk of samples, in f64.
     pub fn sum(&self, row: usize, k: usize, setting: &Setting) -> [f64; 2] {
         let (column, chunk) = (k / self.chunks, k % self.chunks);
         let mu = self.mus[column];
@@ -64,8 +64,8 @@ impl SampleWork {
     }
 }
 
-/// Hammersley's n points (u, φ), the latter as cos φ. Half a turn is enough for lobes that do not tell
-/// left from right, and the points are centred in their cells: both favour the samplers.
+/// Hammersley's n points (u, cos φ). Half a turn is enough for lobes that are symmetric in φ, and the points are centred
+/// in their cells: both favour the samplers.
 fn hammersley(n: usize) -> impl Iterator<Item = [f64; 2]> {
     let half = 0.5 / n as f64;
     (0..n as u32).map(move |k| {
@@ -74,7 +74,7 @@ fn hammersley(n: usize) -> impl Iterator<Item = [f64; 2]> {
     })
 }
 
-/// Twin of `shaders/sampling/random.wgsl`.
+/// The PCG random number generator, the twin of `shaders/sampling/random.wgsl`.
 struct Pcg(u32);
 
 impl Pcg {

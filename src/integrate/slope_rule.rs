@@ -1,4 +1,4 @@
-//! The warped rule of microfacet lobes: which azimuths and how many nodes for each tile of texels.
+//! The warped rule of microfacet lobes: the azimuths and the node counts of each tile of texels.
 
 use crate::base::quadrature::{Node, gauss_legendre};
 use crate::model::parameters::Setting;
@@ -6,35 +6,35 @@ use crate::model::slope_azimuths::side;
 use crate::model::{SlopeCounts, Slopes};
 use std::collections::HashMap;
 
-/// Inner integrals in slopes of ωm, for each (α, μ).
-pub(crate) struct SlopeWork {
+/// The inner integrals in slopes of ωm, one for each (α, μ).
+pub(crate) struct SlopeRule {
     pub slopes: &'static Slopes,
     pub tolerance: f64,
     pub mus: Vec<f64>,
-    /// (μe c, t_max, 1/t_max, weight): for each column of a tile as many as the tile takes, one after the other.
+    /// The azimuths (μe c, t_max, 1/t_max, weight): for each column of a tile as many as the tile takes, one after the other.
     pub azimuths: Vec<[f64; 4]>,
-    /// Gauss–Legendre rules, one after the other.
+    /// The nodes of all Gauss–Legendre rules, one rule after the other.
     pub nodes: Vec<Node>,
-    /// α group by α group, what the tiles take where cos φ > 0 and where it is < 0.
-    pub tiles: Vec<[Side; 2]>,
+    /// The two sides of each tile, cos φ > 0 and cos φ < 0, one group of α after the other.
+    pub tiles: Vec<[SlopeSide; 2]>,
 }
 
-/// Half of the azimuths of a tile.
+/// The azimuths and nodes of a tile on one side of the horizon, cos φ > 0 or cos φ < 0.
 #[derive(Clone, Copy)]
-pub(crate) struct Side {
-    /// Of the tile's first column.
+pub(crate) struct SlopeSide {
+    /// The first azimuth of the tile's first column.
     pub first_azimuth: usize,
     pub first_node: usize,
     pub counts: SlopeCounts,
 }
 
-/// Texels that share their counts: so many α …
+/// The number of α of a tile, whose texels share their node counts.
 pub(crate) const TILE_ALPHAS: usize = 4;
-/// … times so many μ.
+/// The number of μ of a tile.
 pub(crate) const TILE_COLUMNS: usize = 8;
 
-impl SlopeWork {
-    /// Each texel takes `spare` azimuths and nodes more than its tolerance asks for.
+impl SlopeRule {
+    /// The rule for all (α, μ). Each texel takes `spare` azimuths and nodes more than its tolerance asks for.
     pub fn new(
         slopes: &'static Slopes,
         mus: Vec<f64>,
@@ -43,13 +43,13 @@ impl SlopeWork {
         spare: usize,
     ) -> Self {
         let (mut azimuths, mut nodes) = (Vec::new(), Vec::new());
-        // Each rule that some tile takes, and where its azimuths and its nodes are.
+        // Each Gauss–Legendre rule that some tile takes, and the first indices of its azimuths and its nodes.
         let mut rules = HashMap::new();
         let (mut azimuths_of, mut nodes_of) = (HashMap::new(), HashMap::new());
         let mut tiles = Vec::new();
         for settings in settings.chunks(TILE_ALPHAS) {
             for (group, mus) in mus.chunks(TILE_COLUMNS).enumerate() {
-                let counts = most(mus, settings, |mu, setting| (slopes.counts)(mu, setting, tolerance));
+                let counts = max_counts(mus, settings, |mu, setting| (slopes.counts)(mu, setting, tolerance));
                 let counts = counts.map(|SlopeCounts { azimuths, nodes }| SlopeCounts {
                     azimuths: azimuths + spare,
                     nodes: nodes + spare,
@@ -69,7 +69,7 @@ impl SlopeWork {
                         );
                         first
                     });
-                    Side { first_azimuth, first_node, counts }
+                    SlopeSide { first_azimuth, first_node, counts }
                 };
                 tiles.push([(1.0, counts[0]), (-1.0, counts[1])].map(side));
             }
@@ -77,7 +77,7 @@ impl SlopeWork {
         Self { slopes, tolerance, mus, azimuths, nodes, tiles }
     }
 
-    /// What a texel takes, on both sides: azimuths, and the nodes of each.
+    /// The azimuths of a texel, and the nodes that each of them takes, on both sides.
     pub fn sides(&self, row: usize, column: usize) -> [(&[[f64; 4]], &[Node]); 2] {
         let groups = self.mus.len().div_ceil(TILE_COLUMNS);
         self.tiles[row / TILE_ALPHAS * groups + column / TILE_COLUMNS].map(|side| {
@@ -87,30 +87,30 @@ impl SlopeWork {
         })
     }
 
-    /// Evaluations of the integrand for the costliest texel.
+    /// The number of evaluations of the integrand for the costliest texel.
     pub fn largest_cost(&self) -> usize {
         self.tiles.iter().map(|tile| cost(*tile)).max().unwrap_or(1)
     }
 
-    /// Evaluations of the integrand for so many rows of α.
+    /// The number of evaluations of the integrand for all texels of `rows` rows of α.
     #[cfg(feature = "lab")]
     pub fn evaluations(&self, rows: usize) -> usize {
         let groups = self.mus.len().div_ceil(TILE_COLUMNS);
-        let share = |first: usize, of: usize, all: usize| of.min(all - first * of);
+        let filled = |tile: usize, size: usize, all: usize| size.min(all - tile * size);
         let texels = |tile: usize| {
-            share(tile / groups, TILE_ALPHAS, rows) * share(tile % groups, TILE_COLUMNS, self.mus.len())
+            filled(tile / groups, TILE_ALPHAS, rows) * filled(tile % groups, TILE_COLUMNS, self.mus.len())
         };
         self.tiles.iter().enumerate().map(|(k, tile)| texels(k) * cost(*tile)).sum()
     }
 }
 
-/// Evaluations of the integrand for a texel of a tile.
-fn cost(tile: [Side; 2]) -> usize {
+/// The number of evaluations of the integrand for a texel of a tile.
+fn cost(tile: [SlopeSide; 2]) -> usize {
     tile.map(|side| side.counts.azimuths * side.counts.nodes).iter().sum()
 }
 
-/// The largest counts over all of them.
-fn most(
+/// The largest node counts over all (μ, setting).
+fn max_counts(
     mus: &[f64],
     settings: &[Setting],
     counts: impl Fn(f64, &Setting) -> [SlopeCounts; 2],

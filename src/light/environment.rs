@@ -1,7 +1,7 @@
 //! Environment maps: piecewise-constant radiance over cells of latitude and longitude.
 
 use crate::base::error::{Error, Result};
-use crate::base::radiometry::Cell;
+use crate::base::radiometry::DirectionCell;
 use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 
@@ -140,9 +140,9 @@ impl Environment {
     }
 
     /// Returns the cell of a texel in the world. Its azimuths rise while columns fall.
-    pub fn cell(&self, row: usize, column: usize) -> Cell {
+    pub fn cell(&self, row: usize, column: usize) -> DirectionCell {
         let phi = |column: usize| PI + self.rotation - self.psi(column);
-        Cell { theta: [self.theta(row), self.theta(row + 1)], phi: [phi(column + 1), phi(column)] }
+        DirectionCell { theta: [self.theta(row), self.theta(row + 1)], phi: [phi(column + 1), phi(column)] }
     }
 
     /// Returns L from a direction of the world, a unit vector: the texel whose cell contains it.

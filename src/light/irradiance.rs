@@ -1,7 +1,7 @@
 //! Irradiance E(n) = ∫ L(ω) max(0, n·ω) dω.
 //!
 //! Of a map, L is constant over a cell, so a cell that is above the surface sends L n·∫ω dω, and that integral is in
-//! closed form ([`Cell::vector`](crate::base::radiometry::Cell::vector)). In a row these are, but for two factors of the row's, L ∫(cos ψ, sin ψ, 1) dψ, whose
+//! closed form ([`DirectionCell::vector`](crate::base::radiometry::DirectionCell::vector)). In a row these are, but for two factors of the row's, L ∫(cos ψ, sin ψ, 1) dψ, whose
 //! sums over columns are made once: a row costs a normal two look-ups, and beside those only columns where the horizon
 //! crosses the row. There n·ω = A cos θ + B(ψ) sin θ is above 0 down each meridian from the row's border to θh, sin(θh − θm) =
 //! n·ω(θm)/√(A² + B²). What lies between is integrated by Gauss–Legendre, two nodes in θ and two in ψ, on pieces between the

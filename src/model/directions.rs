@@ -1,7 +1,7 @@
 //! Integration maps by direction: where a model's lobe lives, as directions with weights.
 
 use super::SlopeCounts;
-use crate::base::half_angle::{Azimuth, Frame, Pair};
+use crate::base::half_angle::{Azimuth, HalfSums, Pair};
 use crate::base::quadrature::Node;
 use crate::model::parameters::Setting;
 
@@ -65,7 +65,7 @@ impl Sample {
     /// As the shader lays it out.
     pub(crate) fn to_array(self) -> [f64; POINT] {
         let Self { pair: Pair { hz2, dt2, ss, sd, mu_i, mu_e, st, dt, .. }, azimuth, weight } = self;
-        let Azimuth { sin2, cos2, back, frame: Frame { cp, cm, sp, sm }, .. } = azimuth;
+        let Azimuth { sin2, cos2, back, frame: HalfSums { cp, cm, sp, sm }, .. } = azimuth;
         [hz2, dt2, ss, sd, mu_i, mu_e, sin2, cos2, back, weight, st, dt, cp, cm, sp, sm]
     }
 }

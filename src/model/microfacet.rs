@@ -5,7 +5,7 @@
 //! integrand; what is put together at run time is names.
 
 use crate::base::error::{Error, Result};
-use crate::base::half_angle::{Azimuth, Frame, Half, MU_MIN, Pair, sine};
+use crate::base::half_angle::{Azimuth, HalfSums, Half, MU_MIN, Pair, sine};
 use crate::model::directions;
 use crate::model::fresnel::conductor::Conductor;
 use crate::model::fresnel::dielectric::Dielectric;
@@ -436,7 +436,7 @@ impl<N: Ndf, M: Masking> Facets<N, M> {
     /// D G2 / (4 μi μe)
     #[inline(never)]
     fn lobe(p: &Pair, a: &Azimuth, h: &Half, setting: &Setting) -> f64 {
-        let Frame { cp, cm, sp, sm } = a.frame;
+        let HalfSums { cp, cm, sp, sm } = a.frame;
         let axes = N::AXES.map(|axes| axes(setting));
         let with = |alpha: f64| Setting { alpha, ..*setting };
         let toward = |mu: f64, cos: f64, sin: f64| Toward {

@@ -1,4 +1,4 @@
-//! The plan: which tables, over which axes, by which rule. Pure data: printable, comparable,
+//! The plan of a table: its quantity, axes, lobes, rule and tolerance. A plan is pure data: printable, comparable,
 //! testable without a device.
 
 mod unmeasured;
@@ -20,7 +20,7 @@ use crate::table::storage::Storage;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// One table to bake: quantity × axes × subject, and how.
+/// The plan of one table: quantity × axes × subject, its rule, tolerance and storage.
 ///
 /// A plan is checked when it is made and immutable from then on: each `with_…` returns another one, checked again.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,20 +38,20 @@ pub struct TablePlan {
     decisions: Decisions,
 }
 
-/// What follows from the tolerance, decided once when a plan is made (see [`tolerance`](crate::base::tolerance)).
+/// The decisions that follow from the tolerance, made once when a plan is made (see [`tolerance`](crate::base::tolerance)).
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Decisions {
-    /// The share that the quadrature rule may be off by.
+    /// The tolerance of the quadrature rule.
     rule_tolerance: f64,
-    /// The least arithmetic that meets the tolerance.
+    /// The least precision that meets the tolerance.
     precision: Precision,
     /// The format that values are stored in.
     stored: Storage,
 }
 
 impl TablePlan {
-    /// The table of a weighted sum of lobes, one weight of each lobe for each channel, by the warped rule, to the default
-    /// tolerance, stored as f32.
+    /// Plans the table of a weighted sum of lobes, with one pair of weights of each lobe for each channel, by the warped
+    /// rule, to the default tolerance, stored as f32.
     ///
     /// `axes` are the quantity's variables, slowest first, after roughness if that is one.
     ///
@@ -82,7 +82,7 @@ impl TablePlan {
         plan.checked()
     }
 
-    /// A basis: one model with unit weights, its components as channels.
+    /// Plans a basis: one model with unit weights, its components as channels.
     ///
     /// # Errors
     /// When the roughness is outside [0, 1], or the axes do not fit the quantity and the model.
@@ -104,7 +104,7 @@ impl TablePlan {
         Self { name: name.into(), ..self }
     }
 
-    /// The table of another subject: what manifests call it.
+    /// The table under another subject, the name that manifests give it.
     pub fn with_subject(self, subject: impl Into<String>) -> Self {
         Self { subject: subject.into(), ..self }
     }
@@ -133,11 +133,11 @@ impl TablePlan {
         Self { lobes, ..self }.checked()
     }
 
-    /// The table of lobes with energy compensation. What comes back is not linear in F0 and F90, so that a basis must
-    /// have one component.
+    /// The table of lobes with energy compensation. The compensated sum is not linear in F0 and F90, so a basis must have
+    /// one component.
     ///
     /// # Errors
-    /// When a lobe is none of microfacets, or has several components.
+    /// When a lobe is no microfacet lobe, or has several components.
     pub fn with_compensation(mut self, compensation: Compensation) -> Result<Self> {
         if compensation == Compensation::None {
             return Ok(self);
@@ -168,8 +168,8 @@ impl TablePlan {
         self.checked()
     }
 
-    /// The table with all parameters of its lobes, each in its place.
-    pub(crate) fn with_places(mut self, parameters: Parameters) -> Result<Self> {
+    /// The table with all parameters of its lobes, each at its index.
+    pub(crate) fn with_all_parameters(mut self, parameters: Parameters) -> Result<Self> {
         self.lobes = self.lobes.into_iter().map(|lobe| lobe.with_parameters(parameters)).collect();
         self.checked()
     }
@@ -198,7 +198,7 @@ impl TablePlan {
         Self { axes, storage, bilinear: Some(choice), ..self }.checked()
     }
 
-    /// The table at other samples of its own axes, for a comparison: not checked again, as nothing is baked of it.
+    /// The table at other samples of its own axes, for a comparison. The plan is not checked again, as nobody bakes it.
     #[cfg(feature = "check")]
     pub(crate) fn at_samples(&self, axes: Vec<Axis>) -> Self {
         Self { axes, ..self.clone() }.decided()
@@ -243,7 +243,7 @@ impl TablePlan {
         &self.channels
     }
 
-    /// The lobes whose weighted sum the table is of.
+    /// The lobes whose weighted sum the table holds.
     pub fn lobes(&self) -> &[Lobe] {
         &self.lobes
     }
@@ -258,23 +258,23 @@ impl TablePlan {
         self.tolerance.get()
     }
 
-    /// The format that was asked for: see [`TablePlan::stored`] for the one that the tolerance takes.
+    /// The storage format that was asked for; [`TablePlan::stored`] is the one that the tolerance takes.
     pub fn storage(&self) -> Storage {
         self.storage
     }
 
-    /// The layout that was chosen for bilinear look-ups: the tolerance then holds for these.
+    /// The layout that was chosen for bilinear look-ups, for which the tolerance then holds.
     pub fn bilinear(&self) -> Option<&Choice> {
         self.bilinear.as_ref()
     }
 
-    /// The share of the tolerance that the quadrature rule may be off by.
+    /// The tolerance of the quadrature rule, a share of the table's.
     pub(crate) fn rule_tolerance(&self) -> f64 {
         self.decisions.rule_tolerance
     }
 
-    /// The least arithmetic that meets the tolerance: f32 has a floor, of some hundred roundings in an
-    /// integral and of [`VALUE_F32`] in a value.
+    /// The least precision that meets the tolerance: f32 has a floor, of some hundred roundings in an integral and of
+    /// [`VALUE_F32`] in a value.
     pub fn precision(&self) -> Precision {
         self.decisions.precision
     }
@@ -284,7 +284,7 @@ impl TablePlan {
         self.decisions.stored
     }
 
-    /// The plan with what follows from its tolerance.
+    /// The plan with the decisions that follow from its tolerance.
     fn decided(mut self) -> Self {
         let tolerance = self.tolerance.get();
         let floor = if self.quantity.is_value() { self.value_f32() } else { self.integral_f32() };
@@ -303,14 +303,14 @@ impl TablePlan {
         self
     }
 
-    /// The plan, if it can be carried out: axes that fit the quantity and the lobes, α in range.
+    /// The plan, if an evaluator can carry it out: its axes fit the quantity and the lobes, and α is in range.
     fn checked(self) -> Result<Self> {
         let this = self.decided();
         this.check()?;
         Ok(this)
     }
 
-    /// Refuses what cannot be carried out.
+    /// Refuses a plan that no evaluator can carry out.
     fn check(&self) -> Result<()> {
         let refuse = |why: String| Err(Error::input(format!("table \"{}\": {why}", self.name)));
         if let Some(why) = self.quantity.refused() {
@@ -348,12 +348,13 @@ impl TablePlan {
             if let Some(why) = model.refused(&lobe.parameters()) {
                 return refuse(format!("{}: {why}", model.name));
             }
-            for of in lobe.factors().iter().filter_map(Factor::albedo) {
-                if let Some(why) = of.refused() {
-                    return refuse(format!("{} has no albedo: {why}", of.model.name));
+            for albedo in lobe.factors().iter().filter_map(Factor::albedo) {
+                let name = albedo.model.name;
+                if let Some(why) = albedo.refused() {
+                    return refuse(format!("{name} has no albedo: {why}"));
                 }
-                if of.model.shape.is_some() && !swept && of.roughness.or(lobe.roughness()).is_none() {
-                    return refuse(format!("the albedo of {} needs a roughness", of.model.name));
+                if albedo.model.shape.is_some() && !swept && albedo.roughness.or(lobe.roughness()).is_none() {
+                    return refuse(format!("the albedo of {name} needs a roughness"));
                 }
             }
             if model.shape.is_some() && !swept && lobe.roughness().is_none() {
@@ -392,10 +393,10 @@ impl TablePlan {
         let values = self.axes.iter().try_fold(self.channels.len() as u64, count);
         let streams = self.can_stream();
         // Texels are indexed by usize, which has 32 bits on some targets.
-        let most = if streams { MAX_STREAMED.min(usize::MAX as u64) } else { MAX_VALUES };
-        if values.is_none_or(|n| n > most) {
+        let limit = if streams { MAX_STREAMED.min(usize::MAX as u64) } else { MAX_VALUES };
+        if values.is_none_or(|n| n > limit) {
             let value = self.quantity.is_value();
-            let more = match value && !streams {
+            let remedy = match value && !streams {
                 true => {
                     format!(
                         ", or store it as f32, to {:.1e} or more: then it need not fit memory",
@@ -404,12 +405,12 @@ impl TablePlan {
                 }
                 false => String::new(),
             };
-            return refuse(format!("it has more than {most} values; take fewer samples{more}"));
+            return refuse(format!("it has more than {limit} values; take fewer samples{remedy}"));
         }
-        let factors = self.factors();
-        if factors > MAX_FACTORS {
+        let pairs = self.direction_pairs();
+        if pairs > MAX_PAIRS {
             return refuse(format!(
-                "its directions make {factors} pairs, and at most {MAX_FACTORS} fit every device; take fewer \
+                "its directions make {pairs} pairs, and at most {MAX_PAIRS} fit every device; take fewer \
                  samples of θ or μ, or a coarser grid"
             ));
         }
@@ -419,14 +420,14 @@ impl TablePlan {
         Ok(())
     }
 
-    /// Why the rule does not fit the quantity and the lobes, if it does not.
+    /// Checks that the rule fits the quantity and the lobes, and says why it does not.
     fn check_rule(&self) -> Result<(), String> {
         let name = self.rule.name();
         if let Some([theta, phi]) = self.rule.nodes() {
-            let most = if matches!(self.rule, Rule::Gauss { .. }) { MAX_GAUSS } else { MAX_GRID };
-            if !(1..=most).contains(&theta) || !(2..=most).contains(&phi) || phi % 2 == 1 {
+            let limit = if matches!(self.rule, Rule::Gauss { .. }) { MAX_GAUSS } else { MAX_GRID };
+            if !(1..=limit).contains(&theta) || !(2..=limit).contains(&phi) || phi % 2 == 1 {
                 return Err(format!(
-                    "a {name} of {theta} × {phi}; give θ from 1 to {most}, and φ from 2 to {most}, even"
+                    "a {name} of {theta} × {phi}; give θ from 1 to {limit}, and φ from 2 to {limit}, even"
                 ));
             }
         }
@@ -454,14 +455,14 @@ impl TablePlan {
             };
             let fits = fits && (!model.is_anisotropic() || self.rule == Rule::Warped);
             if !fits {
-                let what = match model.integral {
+                let kind = match model.integral {
                     _ if model.is_anisotropic() => "anisotropic",
                     Integral::Delta(_) => "a delta",
                     Integral::Slopes(_) | Integral::Mapped(_) => "a lobe without samplers",
                     _ => "no microfacet lobe",
                 };
                 return Err(format!(
-                    "{} is {what}, and nothing for the {name} rule; use the warped rule",
+                    "{} is {kind}, and nothing for the {name} rule; use the warped rule",
                     model.name
                 ));
             }
@@ -469,9 +470,9 @@ impl TablePlan {
         Ok(())
     }
 
-    /// Factors that an evaluator holds at once: one for each pair of directions, given or of nodes.
-    fn factors(&self) -> usize {
-        /// No less than any warped rule has in one of its dimensions.
+    /// The number of direction pairs whose half-angle terms an evaluator holds at once, over samples and nodes.
+    fn direction_pairs(&self) -> usize {
+        /// No warped rule has more nodes than this in one of its dimensions.
         const NODES: usize = 64;
         let count = |axis: Option<&Axis>| axis.map_or(1, Axis::len);
         let nodes = self.rule.nodes().map_or(NODES, |[theta, _]| theta);
@@ -489,36 +490,37 @@ impl TablePlan {
         }
     }
 
-    /// The relative error of its values in f32: that of its lobes' models.
+    /// The relative error of the table's values in f32: the largest of its lobes'.
     pub(crate) fn value_f32(&self) -> f64 {
-        self.lobes.iter().map(|lobe| self.lobe_f32(lobe)).fold(VALUE_F32, f64::max)
+        self.lobes.iter().map(|lobe| self.lobe_value_f32(lobe)).fold(VALUE_F32, f64::max)
     }
 
-    /// That of one lobe, at the worst of its settings.
-    fn lobe_f32(&self, lobe: &Lobe) -> f64 {
+    /// The relative error of a lobe's values in f32, at the worst of its settings.
+    fn lobe_value_f32(&self, lobe: &Lobe) -> f64 {
         let settings = lobe.settings(&self.alphas(lobe));
         settings.iter().map(|s| lobe.model().value_f32_at(s)).fold(0.0, f64::max)
     }
 
-    /// The least tolerance of its integrals in f32. Where α differ by a ratio, values are off by it where the half vector
-    /// is near the larger one's axis, which is little of an integral until the ratio is above a hundred: measured.
+    /// The least tolerance that the table's integrals meet in f32. Where αx and αy differ by a ratio, values are off by it
+    /// where the half vector is near the larger one's axis. That is little of an integral until the ratio is above a
+    /// hundred, as measured.
     fn integral_f32(&self) -> f64 {
-        let of = |lobe: &Lobe| {
-            let stretched = (self.lobe_f32(lobe) / lobe.model().value_f32 / 20.0).max(1.0);
+        let lobe_floor = |lobe: &Lobe| {
+            let stretched = (self.lobe_value_f32(lobe) / lobe.model().value_f32 / 20.0).max(1.0);
             let factors: f64 = lobe.factors().iter().map(Factor::rho_bound).product();
             let settings = lobe.settings(&self.alphas(lobe));
             let least = settings.iter().map(|s| lobe.model().integral_f32_at(s)).fold(INTEGRAL_F32, f64::max);
             least * stretched * factors.max(1.0)
         };
-        self.lobes.iter().map(of).fold(INTEGRAL_F32, f64::max)
+        self.lobes.iter().map(lobe_floor).fold(INTEGRAL_F32, f64::max)
     }
 
-    /// Whether it can be baked and written piece by piece: values, in f32 throughout.
+    /// Whether the table can be baked and written piece by piece: it must hold values, in f32 throughout.
     pub(crate) fn can_stream(&self) -> bool {
         self.quantity.is_value() && self.precision() == Precision::F32 && self.stored() == Storage::F32
     }
 
-    /// Refuses what is too large for one piece.
+    /// Refuses a table that is too large for one piece.
     pub(crate) fn check_fits_memory(&self) -> Result<()> {
         if self.texels() as u64 * self.channels.len() as u64 <= MAX_VALUES {
             return Ok(());
@@ -530,23 +532,23 @@ impl TablePlan {
         )))
     }
 
-    /// Samples along each axis, slowest first.
+    /// The number of samples along each axis, slowest first.
     pub fn shape(&self) -> Vec<usize> {
         self.axes.iter().map(Axis::len).collect()
     }
 
-    /// Number of texels.
+    /// The number of texels.
     pub fn texels(&self) -> usize {
         self.shape().iter().product()
     }
 
-    /// Whether it is of a model with unit weights. The subject's name does not tell: a material may be
+    /// Whether the subject is a basis, one model with unit weights. The subject's name does not tell: a material may be
     /// named like a model.
     pub fn is_basis(&self) -> bool {
         matches!(&self.lobes[..], [lobe] if lobe.factors().is_empty() && self.channels.iter().eq(lobe.model().components.iter().map(|c| c.name)))
     }
 
-    /// The axis of a variable, if the table has it.
+    /// The axis of a variable, if the table has one.
     pub fn axis(&self, variable: Variable) -> Option<&Axis> {
         self.axes.iter().find(|axis| axis.variable() == variable)
     }
@@ -560,7 +562,7 @@ impl TablePlan {
         roughness.into_iter().map(|r| lobe.model().measure(r)).collect()
     }
 
-    /// Parameters that are the same for the whole table.
+    /// The parameters that are the same for the whole table, by name.
     pub fn parameters(&self) -> BTreeMap<String, f64> {
         let fixed = |lobe: &Lobe| {
             let rest = named(lobe.model(), &lobe.parameters());
@@ -573,15 +575,15 @@ impl TablePlan {
     }
 }
 
-/// The most values of a table in one piece: 1 GiB in f32, and 2 more in f64.
+/// The largest number of values of a table in one piece: 1 GiB in f32, and 2 more in f64.
 const MAX_VALUES: u64 = 1 << 28;
 
-/// The most values of a table that streams, so need not fit memory: 32 GiB as stored, and the device
-/// counts its quads in 32 bits.
+/// The largest number of values of a streamed table, which need not fit memory: 32 GiB as stored, and the device counts
+/// quads of values in 32 bits.
 const MAX_STREAMED: u64 = 1 << 33;
 
-/// The most factors of a table: 32 bytes each in the 128 MiB that every device binds.
-const MAX_FACTORS: usize = 1 << 22;
+/// The largest number of direction pairs of a table: 32 bytes each in the 128 MiB that every device binds.
+const MAX_PAIRS: usize = 1 << 22;
 
 impl fmt::Display for TablePlan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

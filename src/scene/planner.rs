@@ -214,7 +214,7 @@ impl Plan {
                     };
                     let name = format!("{}.{}", model.name, quantity.name);
                     let table = TablePlan::basis(name, quantity, model, None, axes)?;
-                    self.tables.push(table.with_places(parameters)?.with_tolerance(tolerance)?);
+                    self.tables.push(table.with_all_parameters(parameters)?.with_tolerance(tolerance)?);
                 }
             }
         }

@@ -1,4 +1,4 @@
-//! Composes the WGSL that one lobe of a table needs, and nothing else.
+//! Composes the WGSL that one lobe of a table needs, from the files of its parts and of one kernel.
 //!
 //! Parts of a kind define the same names (`ndf`, `visibility`, `fresnel`, `lobe`), so a model is a
 //! list of files and a kernel calls `lobe` whatever it is. A module holds one kernel and one model:
@@ -7,22 +7,22 @@
 use crate::base::precision::Precision;
 use crate::model::{Integral, Model, Part, part};
 
-/// A kernel: one entry point.
+/// A compute kernel, with one entry point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Kernel {
     /// Values over (α, θi, θe, δφ).
     Values,
-    /// The same of a lobe that nothing multiplies, stored in words of 64 bits.
+    /// Values of a lobe without factors, stored in words of 64 bits.
     WideValues,
-    /// The same, added to those of earlier lobes.
+    /// Values, added to those of earlier lobes.
     AddValues,
     /// Values at a list of pairs of directions.
     Points,
-    /// The same, added to those of earlier lobes.
+    /// Values at a list of pairs, added to those of earlier lobes.
     AddPoints,
     /// Integrals in slopes, for tolerances that f32 can meet.
     Slopes,
-    /// The same for finer ones.
+    /// Integrals in slopes, for finer tolerances.
     FineSlopes,
     /// Integrals over (θe, δφ).
     Product,
@@ -32,13 +32,13 @@ pub enum Kernel {
     Ndf,
     /// Integrals by sampling the visible normals.
     Vndf,
-    /// The same, at random.
+    /// Integrals by sampling the visible normals at random.
     Random,
     /// Integrals in closed form.
     Analytic,
     /// The outer sums, into channels.
     Sum,
-    /// The same, added to those of earlier lobes.
+    /// The outer sums, added to the channels of earlier lobes.
     AddSum,
     /// Texels of a texture.
     Pack,
@@ -48,27 +48,28 @@ pub enum Kernel {
     /// Nine spherical-harmonic coefficients of an environment map.
     #[cfg(feature = "light")]
     Harmonics,
-    /// Nothing but stores.
+    /// Stores alone, to measure the device's bandwidth.
     #[cfg(feature = "lab")]
     Fill,
-    /// Nothing but arithmetic.
+    /// Arithmetic alone, to measure the device's operations a second.
     #[cfg(feature = "lab")]
     MultiplyAdd,
-    /// What the driver does.
+    /// The driver probe: how the driver rounds and how many turns its loops take.
     Canary,
 }
 
-/// Room for the rules of Gauss–Legendre that tables of coarse tolerances take, which a test of the models holds: 64 KiB in
-/// f64, what every device binds.
+/// The number of Gauss–Legendre nodes that tables of coarse tolerances take at most, as a test of the models holds: 64 KiB
+/// in f64, which every device binds.
 pub(crate) const COARSE_NODES: usize = 2048;
 
-/// Quads of azimuths that one dispatch of values takes, each of so many factors: in a uniform buffer, of which every
-/// device binds 64 KiB.
+/// The number of quads of azimuths that one dispatch of values takes, in a uniform buffer, of which every device binds
+/// 64 KiB.
 pub(crate) const VALUE_WINDOW: usize = 512;
+/// The number of terms of each azimuth in a quad.
 pub(crate) const QUAD_FACTORS: usize = 7;
 
-/// The WGSL of `kernel` for `model` (none: kernels that evaluate no model) and so many channels; 0 are the
-/// raw results of integrals that an outer sum goes on with.
+/// Composes the WGSL of `kernel` for `model` (`None` for kernels that evaluate no model) and a number of channels; 0
+/// channels are the raw inner integrals, which an outer sum reads.
 pub fn compose(kernel: Kernel, model: Option<&Model>, channels: usize, precision: Precision) -> String {
     let files = kernel.files(channels);
     if kernel.is_plain() {
@@ -124,7 +125,7 @@ const PUT: Part = part!("kernel/put");
 pub(super) const PUT_WIDE: Part = part!("kernel/put_wide");
 
 impl Kernel {
-    /// Its own files, in order.
+    /// The files of the kernel itself, in order.
     fn files(self, channels: usize) -> &'static [Part] {
         match (self, channels) {
             (Self::Values | Self::AddValues, 1) => &[PUT, part!("kernel/store_1"), VALUES],
@@ -164,11 +165,12 @@ impl Kernel {
         }
     }
 
+    /// Whether the kernel evaluates a table of values.
     fn is_of_values(self) -> bool {
         matches!(self, Self::Values | Self::WideValues | Self::AddValues)
     }
 
-    /// Whether it knows no job, model or precision: its file is all of it.
+    /// Whether the kernel takes no job, model or precision, so that its file is the whole shader.
     fn is_plain(self) -> bool {
         match self {
             Self::Pack | Self::Canary => true,

@@ -1,4 +1,4 @@
-//! WGSL sources: composed of parts, validated, and those of an embedder's own models registered.
+//! WGSL sources: composes them of parts, validates them, and registers the models of an embedder.
 
 mod compose;
 mod register;

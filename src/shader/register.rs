@@ -1,11 +1,11 @@
-//! Registers an embedder's own models.
+//! Registers the models of an embedder.
 
 use super::{Kernel, compose, validate};
 use crate::base::error::{Error, Result};
 use crate::base::precision::Precision;
 use crate::model::{self, Model, ModelBuilder};
 
-/// Makes a model of an embedder's own known by its name, so that recipes, plans and checks find it as any other: see
+/// Registers an embedder's model by its name, so that recipes, plans and checks find it as any other: see
 /// `examples/custom.rs`.
 ///
 /// # Errors

@@ -50,7 +50,7 @@ impl Variable {
         if self == Self::Mu { value.acos() } else { value }
     }
 
-    /// The cosine of that angle.
+    /// The cosine of the zenith angle that a value of a direction's θ or μ stands for.
     #[cfg(feature = "check")]
     pub(crate) fn cosine(self, value: f64) -> f64 {
         if self == Self::Mu { value } else { value.cos() }
@@ -96,7 +96,7 @@ impl Variable {
         }
     }
 
-    /// The range an axis takes when none is given; also the widest it may take.
+    /// The default range of an axis, which is also the widest it may take.
     pub fn natural_range(self) -> [f64; 2] {
         match self {
             Self::Roughness | Self::Mu => [0.0, 1.0],
@@ -108,8 +108,8 @@ impl Variable {
         }
     }
 
-    /// Where samples lie when nothing is said: angles on nodes, so that the specular peak is
-    /// sampled; μ, roughness and normals on texel centres, as samplers read them.
+    /// The default positions of samples: angles lie on nodes, so that the specular peak is
+    /// sampled; μ, roughness and normals lie on texel centres, as samplers read them.
     pub fn natural_positions(self) -> Positions {
         match self {
             Self::Roughness | Self::Mu | Self::ThetaN | Self::PhiN => Positions::Centers,
@@ -118,7 +118,7 @@ impl Variable {
     }
 }
 
-/// Where the samples of an axis lie in its unit interval u ∈ [0, 1].
+/// The positions of an axis's samples in its unit interval u ∈ [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Positions {
@@ -130,7 +130,7 @@ pub enum Positions {
     Values,
 }
 
-/// How the unit interval becomes the range [a, b].
+/// The mapping of the unit interval to the range [a, b].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Mapping {
@@ -150,16 +150,16 @@ pub struct Axis {
     values: Vec<f64>,
 }
 
-/// The longest axis: one row of it must fit a device buffer with room to spare.
+/// The largest number of samples of an axis: one row must fit a device buffer with room to spare.
 pub(crate) const MAX_COUNT: usize = 1 << 20;
 
 impl Axis {
-    /// `count` samples over the natural range, at the natural positions (see [`Variable`]).
+    /// Makes an axis of `count` samples over the natural range, at the natural positions (see [`Variable`]).
     pub fn natural(variable: Variable, count: usize) -> Result<Self> {
         Self::new(variable, count, variable.natural_range(), variable.natural_positions(), Mapping::Linear)
     }
 
-    /// `count` samples over `range`.
+    /// Makes an axis of `count` samples over `range`.
     ///
     /// # Errors
     /// When the range is empty, reversed, not finite or wider than the variable's natural range,
@@ -210,7 +210,7 @@ impl Axis {
         Ok(Self { variable, mapping, positions, range, values })
     }
 
-    /// The given values, strictly increasing.
+    /// Makes an axis of listed values, strictly increasing.
     pub fn listed(variable: Variable, values: Vec<f64>) -> Result<Self> {
         let name = variable.name();
         let (Some(&a), Some(&b)) = (values.first(), values.last()) else {
@@ -237,12 +237,12 @@ impl Axis {
         self.variable
     }
 
-    /// How u ∈ [0, 1] becomes a value.
+    /// The mapping of u ∈ [0, 1] to a value.
     pub fn mapping(&self) -> Mapping {
         self.mapping
     }
 
-    /// Where the samples lie in u.
+    /// The positions of the samples in u.
     pub fn positions(&self) -> Positions {
         self.positions
     }
@@ -260,7 +260,7 @@ impl Axis {
     /// The axis with another number of samples over the same range.
     ///
     /// # Errors
-    /// As [`Axis::new`]; listed values have no other count.
+    /// The errors of [`Axis::new`]; listed values have no other count.
     pub fn with_count(&self, count: usize) -> Result<Self> {
         Self::new(self.variable, count, self.range, self.positions, self.mapping)
     }
@@ -272,12 +272,12 @@ impl Axis {
     }
 
     #[cfg(feature = "batch")]
-    /// The axis at some of its samples, by their indices: a preview's.
+    /// The axis at the samples of some indices, for a preview.
     pub(crate) fn thinned(&self, indices: &[usize]) -> Self {
         Self { values: indices.iter().map(|&k| self.values[k]).collect(), ..*self }
     }
 
-    /// The same samples from the last to the first, for readers whose axis runs down: the one axis whose values
+    /// The axis with its samples from the last to the first, for readers whose axis runs down: the one axis whose values
     /// decrease. A square-root mapping has no reversed form, so that its values are listed.
     #[cfg(feature = "files")]
     pub(crate) fn reversed(&self) -> Self {

@@ -1,12 +1,12 @@
-//! How many of a table's texels are compared with the reference.
+//! The number of a table's texels that are compared with the reference.
 
-/// How many texels of a table to compare with the reference. Without the feature `check` nothing is compared (a table's
+/// The texels of a table that are compared with the reference. Without the feature `check` nothing is compared (a table's
 /// error then says so), but integrals are still certified by a second rule unless this is `Sample(0)`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Check {
-    /// The corners and a low-discrepancy set: at least so many, or all if there are fewer; 0: none.
+    /// The corners and a low-discrepancy set of texels: at least this many, or all if there are fewer; 0: none.
     Sample(usize),
-    /// Every one.
+    /// All texels.
     All,
 }
 

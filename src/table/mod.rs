@@ -1,4 +1,4 @@
-//! The table: values, axes, provenance and error. The one currency between all parts.
+//! The table: values, axes, provenance and error. Every other room makes tables or reads them.
 
 pub mod axis;
 mod check;
@@ -23,11 +23,11 @@ use std::fmt::Display;
 /// A baked table: `quantity × axes × subject`, row-major, the channels last.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
-    /// Unique in its set; also the stem of its files.
+    /// The name, unique in its set; also the stem of its files.
     pub name: String,
-    /// What the values are, and in which unit.
+    /// The quantity of the values, with its unit.
     pub quantity: &'static Quantity,
-    /// What was tabulated: a basis (`ggx`) or a material's name.
+    /// The subject: a basis (`ggx`) or a material's name.
     pub subject: String,
     /// Parameters that are the same for the whole table, by name.
     pub parameters: BTreeMap<String, f64>,
@@ -37,21 +37,21 @@ pub struct Table {
     pub channels: Vec<String>,
     /// The values, row-major over the axes, channels last.
     pub values: Values,
-    /// How it was computed, in words: "warped 32 v × 2·24 φ".
+    /// The rule of integration, in words: "warped 32 v × 2·24 φ".
     pub rule: String,
     /// The format that the values were rounded to.
     pub storage: Storage,
-    /// What the storage optimiser chose, where it did.
+    /// The layout that the layout search chose, where it did.
     pub bilinear: Option<Choice>,
     /// The arithmetic: `f32` or `f64`.
     pub precision: String,
-    /// How far the values are from the truth.
+    /// The error of the values against the reference.
     pub error: TableError,
-    /// Time to compute it and to read it back; neither compiling nor the check.
+    /// The seconds to compute the table and to read it back, without compiling and without the check.
     pub seconds: f64,
 }
 
-/// Values in the arithmetic that made them, or in that which they were rounded to.
+/// The values of a table, in the precision in which they were computed or to which they were rounded.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Values {
@@ -69,28 +69,28 @@ pub struct TableError {
     /// Relative errors are |x − f| / max(f, floor); in the table's unit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub floor: Option<f64>,
-    /// What the rule promises a priori, where it promises anything.
+    /// The error that the rule promises a priori, where it promises one.
     pub estimate: Option<f64>,
     /// The largest difference found; `None` when nothing was checked.
     pub measured_max: Option<f64>,
     /// The root mean square of the differences found.
     pub measured_rms: Option<f64>,
-    /// How many texels were compared.
+    /// The number of texels that were compared.
     pub texels_checked: usize,
-    /// What they were compared with, where that is not the f64 reference.
+    /// The name of the values that texels were compared with, where that is not the f64 reference.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub against: Option<String>,
-    /// Values below the normal range of half floats, where they lose relative precision.
+    /// The number of values below the normal range of half floats, where they lose relative precision.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub underflows: Option<usize>,
-    /// What look-ups between the samples cost; `None` where that was not measured.
+    /// The error of look-ups between the samples; `None` where that was not measured.
     pub interpolation: Option<InterpolationError>,
-    /// Where the largest difference lies, axis by axis, with both values.
+    /// The coordinates of the largest difference, axis by axis, with its channel and both values.
     pub worst: BTreeMap<String, f64>,
 }
 
 impl TableError {
-    /// Nothing was compared yet.
+    /// The error of a table of which nothing was compared yet.
     pub(crate) fn unmeasured(kind: ErrorKind, floor: Option<f64>, estimate: Option<f64>) -> Self {
         Self {
             kind,
@@ -117,15 +117,17 @@ pub enum ErrorKind {
     Relative,
 }
 
-/// The largest differences of two tables' texels: of those that were kept, and of those that were taken
-/// from the other; 0 where there are none.
-pub(crate) struct Taken {
+/// The largest differences between the texels of two tables, after one replaced values by the other's; 0 where there are
+/// none.
+pub(crate) struct Replacement {
+    /// The largest difference of a texel that kept its value.
     pub kept: f64,
-    pub largest: f64,
+    /// The largest difference of a texel whose value was replaced.
+    pub replaced: f64,
 }
 
 impl Values {
-    /// How many.
+    /// The number of values.
     pub fn len(&self) -> usize {
         match self {
             Self::F32(values) => values.len(),
@@ -138,7 +140,7 @@ impl Values {
         self.len() == 0
     }
 
-    /// Drops them and keeps their room.
+    /// Drops the values and keeps their allocation.
     #[cfg(feature = "batch")]
     pub(crate) fn clear(&mut self) {
         match self {
@@ -147,7 +149,7 @@ impl Values {
         }
     }
 
-    /// One of them; both kinds fit f64.
+    /// The value at an index, as f64, which holds both precisions.
     pub fn get(&self, k: usize) -> f64 {
         match self {
             Self::F32(values) => f64::from(values[k]),
@@ -155,12 +157,12 @@ impl Values {
         }
     }
 
-    /// All of them, in order.
+    /// All values, in order.
     pub fn iter(&self) -> impl Iterator<Item = f64> + Clone {
         (0..self.len()).map(|k| self.get(k))
     }
 
-    /// One of them in the fewest digits that tell it from its neighbours.
+    /// Prints the value at an index in the fewest digits that tell it from its neighbours.
     pub fn show(&self, k: usize) -> String {
         match self {
             Self::F32(values) => values[k].to_string(),
@@ -168,29 +170,28 @@ impl Values {
         }
     }
 
-    /// Takes the values of `other` for every texel of so many channels where both differ by more than
-    /// `limit`.
-    pub(crate) fn take_beyond(&mut self, limit: f64, other: &Self, channels: usize) -> Taken {
-        let mut taken = Taken { kept: 0.0, largest: 0.0 };
+    /// Replaces every texel, of `channels` values, that differs by more than `limit` from that of `other`.
+    pub(crate) fn replace_beyond(&mut self, limit: f64, other: &Self, channels: usize) -> Replacement {
+        let mut replacement = Replacement { kept: 0.0, replaced: 0.0 };
         for texel in 0..self.len() / channels {
             let range = texel * channels..(texel + 1) * channels;
             let difference = range.clone().map(|k| (self.get(k) - other.get(k)).abs()).fold(0.0, f64::max);
             if difference <= limit {
-                taken.kept = taken.kept.max(difference);
+                replacement.kept = replacement.kept.max(difference);
                 continue;
             }
-            taken.largest = taken.largest.max(difference);
+            replacement.replaced = replacement.replaced.max(difference);
             match (&mut *self, other) {
                 (Self::F32(to), Self::F32(from)) => to[range.clone()].copy_from_slice(&from[range]),
                 (Self::F64(to), Self::F64(from)) => to[range.clone()].copy_from_slice(&from[range]),
-                // One path makes one kind.
+                // One path computes in one precision.
                 _ => {}
             }
         }
-        taken
+        replacement
     }
 
-    /// Rounded to f32, to the nearest.
+    /// The values rounded to f32, to the nearest.
     pub fn to_f32(&self) -> Cow<'_, [f32]> {
         match self {
             Self::F32(values) => Cow::Borrowed(values),
@@ -222,7 +223,7 @@ impl Table {
         self.shape().iter().product()
     }
 
-    /// The image that holds the table: width is the last axis, height the product of the others.
+    /// The (width, height) of the image that holds the table: the last axis, and the product of the others.
     pub fn image_size(&self) -> (usize, usize) {
         let width = self.axes.last().map_or(1, Axis::len);
         (width, self.texels() / width)
@@ -252,26 +253,26 @@ impl Table {
         }
     }
 
-    /// The same of a part of its values, which begin at a texel.
+    /// Refuses impossible values as [`check_sane`](Self::check_sane) does, among values that begin at `texel`.
     pub(crate) fn check_sane_from<T>(&self, texel: usize, values: &[T]) -> Result<()>
     where
         T: Copy + Into<f64> + Display,
     {
         let channels = self.channels.len();
-        let Some(at) = values.iter().position(|&value| !self.quantity.allows(value.into())) else {
+        let Some(index) = values.iter().position(|&value| !self.quantity.allows(value.into())) else {
             return Ok(());
         };
         Err(Error::Promise(format!(
             "table {}: {} at {}; {}",
             self.name,
-            values[at],
-            self.place(texel + at / channels),
+            values[index],
+            self.coordinates(texel + index / channels),
             self.quantity.allowed(),
         )))
     }
 
-    /// A texel's coordinates, in words.
-    pub fn place(&self, texel: usize) -> String {
+    /// Prints a texel's coordinates: "roughness = 0.5, mu = 1".
+    pub fn coordinates(&self, texel: usize) -> String {
         let coordinates = self.axes.iter().zip(self.indices(texel));
         let words: Vec<_> = coordinates
             .map(|(axis, k)| format!("{} = {}", axis.variable().name(), axis.values()[k]))
@@ -295,10 +296,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_texels_that_differ_too_much_are_taken() {
+    fn only_texels_that_differ_too_much_are_replaced() {
         let mut values = Values::F64(vec![1.0, 1.0, 2.0, 2.0, 3.0, 3.0]);
-        let taken = values.take_beyond(0.1, &Values::F64(vec![1.0, 1.05, 2.0, 2.5, 3.0, 3.0]), 2);
+        let replacement = values.replace_beyond(0.1, &Values::F64(vec![1.0, 1.05, 2.0, 2.5, 3.0, 3.0]), 2);
         assert_eq!(values, Values::F64(vec![1.0, 1.0, 2.0, 2.5, 3.0, 3.0]));
-        assert!((taken.kept - 0.05).abs() < 1e-12 && (taken.largest - 0.5).abs() < 1e-12);
+        assert!((replacement.kept - 0.05).abs() < 1e-12 && (replacement.replaced - 0.5).abs() < 1e-12);
     }
 }

@@ -1,35 +1,35 @@
-//! What is known of a table beside its values: its bilinear error, and the layout that was chosen for it.
+//! Reports about a table: its bilinear error, and the layout that was chosen for it.
 
 use super::storage::Storage;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// The error of bilinear look-ups, absolute.
+/// The absolute error of bilinear look-ups in a table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct InterpolationError {
-    /// How the table is sampled: `bilinear`.
+    /// The kind of look-up: `bilinear`.
     pub kind: &'static str,
     /// The largest error found in `domain`, against the reference; `None` where the table has no part of it.
     pub max: Option<f64>,
     /// The root mean square over all of the axes' range, even in each variable.
     pub rms: f64,
-    /// Where `max` was looked for: [min, max] of each axis.
+    /// The domain in which `max` was searched: [min, max] of each axis.
     pub domain: BTreeMap<String, [f64; 2]>,
-    /// Where it was found, axis by axis, with the channel and both values.
+    /// The coordinates of `max`, axis by axis, with its channel and both values.
     pub worst: BTreeMap<String, f64>,
-    /// Look-ups compared with the fast f64 path, which finds the worst and the rms.
+    /// The number of look-ups compared with the fast f64 path, which finds the worst and the rms.
     pub points: usize,
-    /// Look-ups compared with the reference.
+    /// The number of look-ups compared with the reference.
     pub points_checked: usize,
-    /// The largest difference between the fast path and the reference in those.
+    /// The largest difference between the fast path and the reference among those.
     pub certified: f64,
 }
 
-/// What the optimiser chose for a table, and instead of what.
+/// The layout that the layout search chose for a table, with the next best.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Choice {
-    /// The table as it is.
+    /// The layout of the table.
     pub chosen: Layout,
     /// The best one that differs in more than size.
     pub runner_up: Option<Layout>,
@@ -37,14 +37,14 @@ pub struct Choice {
     pub usual_bytes: usize,
 }
 
-/// Axes, format and what they cost.
+/// A table's axes and storage format, with their bytes and bilinear error.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Layout {
-    /// In words, axis by axis: "sqrt nodes [0.05, 1] × 48".
+    /// The axes in words, such as "sqrt nodes [0.05, 1] × 48".
     pub axes: Vec<String>,
-    /// The format.
+    /// The storage format.
     pub storage: Storage,
-    /// Of the table.
+    /// The bytes of the table.
     pub bytes: usize,
     /// The largest error of bilinear look-ups where the promise holds, by the plan's own arithmetic.
     pub error: f64,

@@ -1,13 +1,13 @@
-//! The rules by which hemispherical integrals are done.
+//! The quadrature rules of hemispherical integrals.
 
 use std::fmt;
 
-/// How integrals are done.
+/// A quadrature rule of hemispherical integrals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rule {
-    /// Where the lobe lives, up to the exact horizon: each model's own map.
+    /// Each model's own map, which puts nodes where the lobe is, up to the exact horizon.
     Warped,
-    /// The definition: midpoints over (θ, φ), each times its cell's projected solid angle.
+    /// Midpoints over (θ, φ), each times its cell's projected solid angle: the sum in the definition.
     Grid {
         /// Cells in θ ∈ [0, π/2].
         theta: usize,
@@ -21,7 +21,7 @@ pub enum Rule {
         /// Nodes in φ ∈ [0, 2π); even, as the two halves are alike.
         phi: usize,
     },
-    /// Importance sampling of the distribution of normals by Hammersley's points: what most bakers do.
+    /// Importance sampling of the distribution of normals by Hammersley's points, as most bakers do.
     Hammersley {
         /// Samples a texel: up to 1024, or a multiple of it.
         samples: usize,
@@ -31,7 +31,7 @@ pub enum Rule {
         /// Samples a texel: up to 1024, or a multiple of it.
         samples: usize,
     },
-    /// Importance sampling of the visible normals at random, each texel for itself.
+    /// Importance sampling of the visible normals at random, independently in each texel.
     Random {
         /// Samples a texel: up to 1024, or a multiple of it.
         samples: usize,
@@ -39,7 +39,7 @@ pub enum Rule {
 }
 
 impl Rule {
-    /// Its name in recipes and files.
+    /// The name in recipes and files.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Warped => "warped",
@@ -51,7 +51,7 @@ impl Rule {
         }
     }
 
-    /// Samples a texel, if it samples.
+    /// The samples of a texel, if the rule draws samples.
     pub(crate) fn samples(&self) -> Option<usize> {
         match *self {
             Self::Hammersley { samples } | Self::Vndf { samples } | Self::Random { samples } => Some(samples),
@@ -59,7 +59,7 @@ impl Rule {
         }
     }
 
-    /// Nodes in θ and φ, if it is a product of them.
+    /// The nodes in θ and φ, if the rule is a product of both.
     pub(crate) fn nodes(&self) -> Option<[usize; 2]> {
         match *self {
             Self::Grid { theta, phi } | Self::Gauss { theta, phi } => Some([theta, phi]),
@@ -82,15 +82,15 @@ impl fmt::Display for Rule {
     }
 }
 
-/// The finest grid rule: with more nodes in θ no table is left whose factors fit. What a device's driver runs of it
-/// is for the device to say.
+/// The finest grid rule: with more nodes in θ, the half-angle terms of no table fit. The device checks which loops its
+/// driver runs.
 pub(crate) const MAX_GRID: usize = 1 << 16;
 
 /// The finest Gauss–Legendre rule: beyond it the host takes seconds to find the nodes.
 pub(crate) const MAX_GAUSS: usize = 4096;
 
-/// The most samples: their draws take 32 MiB.
+/// The largest number of samples: their draws take 32 MiB.
 pub(crate) const MAX_SAMPLES: usize = 1 << 22;
 
-/// Samples that one invocation sums. A driver may stop a loop at 65,535 turns and say nothing.
+/// The number of samples that one invocation sums. A driver may stop a loop at 65,535 turns and say nothing.
 pub(crate) const CHUNK: usize = 1024;

@@ -19,7 +19,7 @@ pub enum Storage {
     Unorm16,
 }
 
-/// Rounded values, and how many of them fell below the normal range of halves.
+/// The rounded values, and the number of them that fell below the normal range of halves.
 pub(crate) struct Stored {
     pub values: Values,
     pub underflows: usize,
@@ -48,7 +48,7 @@ impl Storage {
         }
     }
 
-    /// The bound on what rounding changes a value by: absolute for values up to 1, or relative.
+    /// The bound on the rounding error of a value: absolute for values up to 1, or relative.
     pub fn rounding(self, kind: ErrorKind) -> f64 {
         match (self, kind) {
             (Self::F64, _) => f64::EPSILON / 2.0,
@@ -57,12 +57,12 @@ impl Storage {
             (Self::F16, ErrorKind::Absolute) => 1.0 / 4096.0,
             (Self::F16, ErrorKind::Relative) => 1.0 / 2048.0,
             (Self::Unorm16, ErrorKind::Absolute) => 0.5 / UNORM,
-            // What is near 0 loses all of itself.
+            // A value near 0 loses all of its digits.
             (Self::Unorm16, ErrorKind::Relative) => 1.0,
         }
     }
 
-    /// The same where it counts: rounding to f32 is part of what the arithmetic's error is measured at.
+    /// The bound on the rounding error of 16-bit formats, else 0: the arithmetic's error is measured with rounding to f32.
     pub(crate) fn coarse_rounding(self, kind: ErrorKind) -> f64 {
         if self.bytes() < Self::F32.bytes() { self.rounding(kind) } else { 0.0 }
     }
@@ -77,7 +77,7 @@ impl Storage {
         }
     }
 
-    /// Rounds the values. What does not fit is refused, with a reason: overflow of halves, values
+    /// Rounds the values. Values that do not fit are refused, with a reason: overflow of halves, values
     /// outside [0, 1] for unorm16, and underflow (a value that is not 0 below 2⁻¹⁴, where halves lose
     /// their precision) if errors are relative. If they are absolute, underflow costs at most 2⁻²⁵: it
     /// is counted, and measured with the rest.

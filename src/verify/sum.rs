@@ -6,7 +6,7 @@ use crate::base::error::{Error, Result};
 use crate::base::precision::{INTEGRAL_F32, VALUE_F32};
 use crate::base::timings::Timings;
 use crate::check::{Check, ReferenceLobe, reference_angles};
-use crate::integrate::scale::Scale;
+use crate::integrate::scale::LobeScale;
 use crate::model::compensation::{Compensation, Factor};
 use crate::model::lobe::Lobe;
 use crate::model::parameters::Parameters;
@@ -171,8 +171,8 @@ impl<'a> Sum<'a> {
     fn is_one_sided(&self) -> bool {
         let high: Vec<_> = self.parameters.iter().map(|parameter| parameter.high).collect();
         (self.lobes)(&high).unwrap_or_default().iter().any(|lobe| {
-            let scale = Scale::new(lobe.factors(), lobe.roughness());
-            let [there, back] = [scale.at(1.0, 0.3), scale.at(0.3, 1.0)];
+            let scale = LobeScale::new(lobe.factors(), lobe.roughness());
+            let [there, back] = [scale.value(1.0, 0.3), scale.value(0.3, 1.0)];
             let is_there = lobe.weights().iter().any(|weight| *weight != [0.0; 2]);
             is_there && (there - back).abs() > 1e-3 * there.max(back)
         })
@@ -184,7 +184,7 @@ impl<'a> Sum<'a> {
         let lobes = (self.lobes)(&low).unwrap_or_default();
         let error = |lobe: &Lobe| match &lobe.factors()[..] {
             [] => 0.0,
-            factors => Scale::new(factors, lobe.roughness()).error(),
+            factors => LobeScale::new(factors, lobe.roughness()).error(),
         };
         lobes.iter().map(error).fold(0.0, f64::max)
     }

@@ -62,7 +62,7 @@ fn textures_hold_the_headless_tables() {
                     }
                     _ => unreachable!(),
                 };
-                let place = table.place(texel);
+                let place = table.coordinates(texel);
                 assert!(equal, "{plan}, {format:?}, channel {c}, {place}: {found} for {expected}");
             }
         }

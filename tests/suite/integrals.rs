@@ -96,7 +96,7 @@ fn conserve_energy() {
                 (0.0..=energy(model) + INTEGRAL_F32).contains(&rho),
                 "{}: {rho} at {}",
                 model.name,
-                table.place(texel)
+                table.coordinates(texel)
             );
         }
     }

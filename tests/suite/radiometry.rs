@@ -2,13 +2,13 @@
 
 use gonio::base::quadrature::gauss_legendre;
 use gonio::base::radiometry::{
-    Beam, Cell, HEMISPHERE, LIGHT_SPEED, PLANCK, Rectangle, SPHERE, apparent, cone, photon_energy, photons,
-    polygon, projected_cone, projected_polygon, triangle,
+    Beam, DirectionCell, HEMISPHERE, LIGHT_SPEED, PLANCK, Rectangle, SPHERE, apparent, cone, photon_energy,
+    photons, polygon, projected_cone, projected_polygon, triangle,
 };
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Gauss–Legendre of 40 nodes in θ and φ of the definition: exact to rounding for a cell below π wide.
-fn sum(cell: &Cell, f: impl Fn([f64; 3]) -> f64) -> f64 {
+fn sum(cell: &DirectionCell, f: impl Fn([f64; 3]) -> f64) -> f64 {
     let rule = gauss_legendre(40);
     let at = |[a, b]: [f64; 2], x: f64| a + (b - a) * x;
     let size = (cell.theta[1] - cell.theta[0]) * (cell.phi[1] - cell.phi[0]);
@@ -28,7 +28,7 @@ fn close(a: f64, b: f64, relative: f64) {
 fn a_cell_is_what_its_definition_sums_to() {
     for theta in [[0.0, 0.3], [0.3, 0.4], [1.2, 1.5], [2.0, PI], [0.0, PI]] {
         for phi in [[0.0, 1.0], [-0.3, 0.1], [2.0, 5.0]] {
-            let cell = Cell { theta, phi };
+            let cell = DirectionCell { theta, phi };
             close(cell.solid_angle(), sum(&cell, |_| 1.0), 1e-13);
             let vector: [f64; 3] = std::array::from_fn(|k| sum(&cell, |w| w[k]));
             let length = cell.solid_angle();
@@ -44,7 +44,7 @@ fn a_cell_is_what_its_definition_sums_to() {
 #[test]
 fn a_tiny_cell_keeps_its_digits() {
     for (a, b) in [(1e-9, 2e-9), (0.0, 1e-7), (1e-3, 1e-3 + 1e-12)] {
-        let cell = Cell { theta: [a, b], phi: [0.0, 1e-6] };
+        let cell = DirectionCell { theta: [a, b], phi: [0.0, 1e-6] };
         let truth = 0.5 * (b - a) * (b + a) * 1e-6;
         // θ − sin θ is θ³/6; the middle of [a, b] is rounded once.
         close(cell.solid_angle(), truth, 1e-6);
@@ -55,17 +55,17 @@ fn a_tiny_cell_keeps_its_digits() {
 
 #[test]
 fn cells_tile_the_sphere_and_the_hemisphere() {
-    let cells = |rows: usize, most: f64| -> Vec<Cell> {
+    let cells = |rows: usize, most: f64| -> Vec<DirectionCell> {
         let theta = move |k: usize| most * k as f64 / rows as f64;
         let phi = |j: usize| TAU * j as f64 / 7.0;
         (0..rows)
             .flat_map(|k| (0..7).map(move |j| (k, j)))
-            .map(|(k, j)| Cell { theta: [theta(k), theta(k + 1)], phi: [phi(j), phi(j + 1)] })
+            .map(|(k, j)| DirectionCell { theta: [theta(k), theta(k + 1)], phi: [phi(j), phi(j + 1)] })
             .collect()
     };
-    close(cells(13, PI).iter().map(Cell::solid_angle).sum(), SPHERE, 1e-14);
-    close(cells(13, FRAC_PI_2).iter().map(Cell::solid_angle).sum(), HEMISPHERE, 1e-14);
-    close(cells(13, FRAC_PI_2).iter().map(Cell::projected).sum(), PI, 1e-14);
+    close(cells(13, PI).iter().map(DirectionCell::solid_angle).sum(), SPHERE, 1e-14);
+    close(cells(13, FRAC_PI_2).iter().map(DirectionCell::solid_angle).sum(), HEMISPHERE, 1e-14);
+    close(cells(13, FRAC_PI_2).iter().map(DirectionCell::projected).sum(), PI, 1e-14);
 }
 
 #[test]
@@ -73,7 +73,7 @@ fn a_cone_is_the_limit_of_a_cell_and_of_a_polygon() {
     close(cone(FRAC_PI_2), HEMISPHERE, 1e-15);
     close(cone(PI), SPHERE, 1e-15);
     close(projected_cone(FRAC_PI_2, 0.0), PI, 1e-15);
-    close(cone(0.7), Cell { theta: [0.0, 0.7], phi: [0.0, TAU] }.solid_angle(), 1e-15);
+    close(cone(0.7), DirectionCell { theta: [0.0, 0.7], phi: [0.0, TAU] }.solid_angle(), 1e-15);
     // Sides of a regular polygon of n lie π²/(2 n²) of the radius inside at most.
     let n = 20_000;
     let tilt = 0.6f64;

@@ -5,7 +5,7 @@ use crate::common::*;
 use gonio::backend::gpu::DeviceChoice;
 use gonio::bake::{Evaluator, Observer, Unobserved};
 use gonio::base::timings::Timings;
-use gonio::batch::{Baked, Options, Streaming, bake_set};
+use gonio::batch::{Baked, SetOptions, Streaming, bake_set};
 use gonio::check::Check;
 use gonio::io::format::FORMATS;
 use gonio::io::target::IDENTITY;
@@ -63,7 +63,7 @@ fn bake_recipe(
     observer: &dyn Observer,
 ) -> Result<Baked> {
     let plan = Plan::new(&scene::read(recipe)?, &Selection::default())?;
-    let options = Options { formats: FORMATS.to_vec(), target: &IDENTITY, check, streaming };
+    let options = SetOptions { formats: FORMATS.to_vec(), target: &IDENTITY, check, streaming };
     bake_set(&plan, recipe, evaluator, out, &options, Timings::default(), observer)
 }
 

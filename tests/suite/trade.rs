@@ -75,7 +75,7 @@ fn the_device_and_the_cpu_agree() {
         let [a, b] = evaluators()
             .map(|e| bake(e, &plan.clone().with_tolerance(1.0).unwrap(), gonio::check::Check::Sample(0)));
         for (texel, (x, y)) in a.values.iter().zip(b.values.iter()).enumerate() {
-            assert!((x - y).abs() < 2e-5, "{rule}: {x} and {y} at {}", a.place(texel / 2));
+            assert!((x - y).abs() < 2e-5, "{rule}: {x} and {y} at {}", a.coordinates(texel / 2));
         }
     }
 }

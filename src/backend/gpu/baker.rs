@@ -1,13 +1,13 @@
 //! Records the baking of a table on a device that the caller owns.
 
-use crate::backend::gpu::dispatch::{Dispatches, Job, Rows, Stage, TILE_SUMS, Upload};
+use crate::backend::gpu::dispatch::{Dispatches, KernelJob, Stage, TILE_SUMS, Upload, ValueRows};
 use crate::backend::gpu::loop_limit;
 use crate::backend::gpu::loop_limit::SAFE_TURNS;
 use crate::base::error::{Error, Result};
 use crate::base::precision::Precision;
 use crate::base::timings::Stopwatch;
-use crate::integrate::direction_rule::MappedWork;
-use crate::integrate::rule_set::Work;
+use crate::integrate::direction_rule::DirectionRule;
+use crate::integrate::rule_set::RuleSet;
 use crate::integrate::slope_rule::TILE_ALPHAS;
 use crate::model::Model;
 use crate::plan::TablePlan;
@@ -34,67 +34,68 @@ type PipelineKey = (Kernel, Option<&'static str>, usize, Precision);
 /// A table on the device: `height` rows of `width` texels of `channels` floats.
 #[derive(Debug, Clone)]
 pub struct Recorded {
-    /// Its usages are `STORAGE | COPY_SRC`.
+    /// The buffer, with usages `STORAGE | COPY_SRC`.
     pub buffer: wgpu::Buffer,
-    /// Texels along the table's last axis.
+    /// The number of texels along the table's last axis.
     pub width: usize,
-    /// Texels from one row to the next: rows of values are padded to whole quads.
+    /// The number of texels from one row to the next: rows of values are padded to whole quads.
     pub row: usize,
     /// The product of the other axes.
     pub height: usize,
-    /// Channels of a texel.
+    /// The number of channels of a texel.
     pub channels: usize,
 }
 
-/// A table whose buffers and pipelines are there.
+/// A table whose buffers and pipelines exist, ready to record.
 pub struct Prepared {
-    /// Where it will be.
+    /// The buffer that will hold it.
     pub recorded: Recorded,
-    steps: Vec<Step>,
+    steps: Vec<DispatchStep>,
 }
 
 /// One dispatch, ready to encode.
-pub(crate) struct Step {
+pub(crate) struct DispatchStep {
     pub pipeline: wgpu::ComputePipeline,
     pub bind_group: wgpu::BindGroup,
     pub workgroups: [u32; 2],
-    /// How many evaluations it does, to weigh progress with.
+    /// The number of evaluations, by which progress is weighted.
     pub evaluations: u64,
 }
 
 /// A part of a table that is computed in one buffer.
 pub(crate) struct Tile {
     pub buffer: wgpu::Buffer,
-    pub steps: Vec<Step>,
+    pub steps: Vec<DispatchStep>,
 }
 
-/// The shape of a table's result: what a tile is a range of.
+/// The shape of a table's result in units; a tile is a range of units.
 #[derive(Clone, Copy)]
-pub(crate) struct Layout {
-    /// Rows of azimuths in a table of values, rows of α in a table of integrals.
+pub(crate) struct ResultLayout {
+    /// The number of units: rows of azimuths in a table of values, rows of α in a table of integrals.
     pub units: usize,
-    /// Texels of a unit, and with its padding.
+    /// The number of texels of a unit.
     pub texels: usize,
+    /// The number of texels of a unit with its padding.
     pub padded: usize,
     pub channels: usize,
-    /// Of the result: values are f32 however they are computed.
+    /// The precision of the result: values are f32 however they are computed.
     pub precision: Precision,
 }
 
-/// What a dispatch may cost: 8 million evaluations stay below 100 ms on two cores of software
+/// The largest number of evaluations of a dispatch: 8 million stay below 100 ms on two cores of software
 /// Vulkan, at 100 million a second.
 pub(crate) const EVALUATIONS_PER_DISPATCH: usize = 1 << 23;
-/// 64 a workgroup, and at most 65,535 workgroups.
+/// The largest number of invocations of a dispatch: 64 a workgroup, and at most 65,535 workgroups.
 const INVOCATIONS_PER_DISPATCH: usize = 1 << 21;
-/// Bytes of a tile's result, and of the raw integrals behind it.
+/// The bytes of a tile's result, and of its inner integrals.
 const TILE_BYTES: usize = 1 << 25;
 const WORKGROUP: usize = 64;
-/// Points of integrals that are uploaded together: 16 MiB in f32.
+/// The number of points of integrals that are uploaded together: 16 MiB in f32.
 const POINTS_PER_DISPATCH: usize = 1 << 18;
-/// 32 a workgroup of values, of which there are at most 65,535.
+/// The largest number of rows of a dispatch of values: 32 a workgroup, and at most 65,535 workgroups.
 const ROWS_PER_DISPATCH: usize = 1 << 20;
 
-impl Layout {
+impl ResultLayout {
     pub fn new(table: &TablePlan, precision: Precision) -> Self {
         let channels = table.channels().len();
         if !is_value(table) {
@@ -112,12 +113,12 @@ impl Layout {
         }
     }
 
-    /// Bytes of so many units.
+    /// The bytes of a number of units.
     pub fn bytes(&self, units: usize) -> usize {
         units * self.padded * self.channels * self.precision.bytes()
     }
 
-    /// No values yet, of the result's kind, with room for so many units.
+    /// An empty list of values in the result's precision, with room for a number of units.
     pub fn values(&self, units: usize) -> Values {
         let room = units * self.texels * self.channels;
         match self.precision {
@@ -126,7 +127,7 @@ impl Layout {
         }
     }
 
-    /// Appends the values that a device's bytes hold, without their padding.
+    /// Appends the values in a device's bytes, without their padding.
     pub fn append(&self, bytes: &[u8], values: &mut Values) {
         let number = self.channels * self.precision.bytes();
         for row in bytes.chunks_exact(self.padded * number) {
@@ -143,18 +144,18 @@ impl Layout {
         }
     }
 
-    /// The ranges of units that fit a tile each, by size alone: results must not depend on speed.
-    pub fn tiles(&self, stages: &[Dispatches]) -> Vec<Range<usize>> {
-        let behind = |stages: &Dispatches| stages.raw_bytes_per_unit().max(stages.uploaded_bytes_per_unit());
-        let raw = stages.iter().map(behind).max().unwrap_or(0);
-        // Whole groups of what an invocation takes together.
+    /// The tiles of a table, as ranges of units, by size alone: results must not depend on speed.
+    pub fn tiles(&self, dispatches: &[Dispatches]) -> Vec<Range<usize>> {
+        let raw_bytes = |lobe: &Dispatches| lobe.raw_bytes_per_unit().max(lobe.uploaded_bytes_per_unit());
+        let raw = dispatches.iter().map(raw_bytes).max().unwrap_or(0);
+        // A tile has whole groups of the α that an invocation takes together.
         let per_tile = (TILE_BYTES / raw.max(self.bytes(1)) / TILE_ALPHAS * TILE_ALPHAS).max(TILE_ALPHAS);
         (0..self.units).step_by(per_tile).map(|first| first..(first + per_tile).min(self.units)).collect()
     }
 }
 
 impl Baker {
-    /// A baker on the caller's device. wgpu's handles are shared, so it keeps cheap clones.
+    /// Makes a baker on the caller's device. wgpu's handles are shared, so it keeps cheap clones.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
         Self {
             device: device.clone(),
@@ -164,26 +165,26 @@ impl Baker {
         }
     }
 
-    /// Records the baking of `table` into `encoder` and returns the buffer that will hold it. Does
-    /// not submit, read back or block; the rule alone answers for the error then.
+    /// Records the baking of `table` into `encoder` and returns the buffer that will hold it. It does
+    /// not submit, read back or block; the error is then the rule's alone, as nobody measures it.
     ///
     /// # Errors
-    /// As [`prepare`](Self::prepare)'s.
+    /// The errors of [`prepare`](Self::prepare).
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, table: &TablePlan) -> Result<Recorded> {
         let prepared = self.prepare(table)?;
         prepared.encode(encoder);
         Ok(prepared.recorded)
     }
 
-    /// All that [`record`](Self::record) needs, made once: for whoever bakes the same table again and
+    /// Makes the buffers and pipelines of [`record`](Self::record) once, for callers that bake the same table again and
     /// again into the same buffer.
     ///
     /// # Errors
     /// When the table does not fit one binding of the device, or takes loops that not every driver runs.
     pub fn prepare(&self, table: &TablePlan) -> Result<Prepared> {
-        let layout = Layout::new(table, Precision::F32);
-        let stages = self.stages(table, Precision::F32, || Ok(SAFE_TURNS))?;
-        let raw = stages.iter().map(Dispatches::raw_bytes_per_unit).max().unwrap_or(0) * layout.units;
+        let layout = ResultLayout::new(table, Precision::F32);
+        let dispatches = self.dispatches(table, Precision::F32, || Ok(SAFE_TURNS))?;
+        let raw = dispatches.iter().map(Dispatches::raw_bytes_per_unit).max().unwrap_or(0) * layout.units;
         let bytes = layout.bytes(layout.units).max(raw);
         let limits = self.device.limits();
         let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
@@ -193,7 +194,7 @@ impl Baker {
                 table.name()
             )));
         }
-        let tile = self.tile(&layout, &stages, 0..layout.units)?;
+        let tile = self.tile(&layout, &dispatches, 0..layout.units)?;
         let width = table.axes().last().map_or(1, |axis| axis.len());
         let row = if is_value(table) { layout.padded } else { width };
         let recorded = Recorded {
@@ -206,25 +207,30 @@ impl Baker {
         Ok(Prepared { recorded, steps: tile.steps })
     }
 
-    /// The work of every lobe of a table, uploaded. `known_turns` of loops are known to run.
-    pub(crate) fn stages(
+    /// Uploads the rule set of every lobe of a table. `known_turns` returns the turns of loops that are known to run.
+    pub(crate) fn dispatches(
         &self,
         table: &TablePlan,
         precision: Precision,
         known_turns: impl Fn() -> Result<u32>,
     ) -> Result<Vec<Dispatches>> {
-        let stages = |(k, lobe)| {
-            let work = Work::new(table, lobe);
-            loop_limit::check(table, &work, &known_turns)?;
-            Dispatches::new(self, lobe, &work, k > 0, precision)
+        let dispatches = |(k, lobe)| {
+            let rules = RuleSet::new(table, lobe);
+            loop_limit::check(table, &rules, &known_turns)?;
+            Dispatches::new(self, lobe, &rules, k > 0, precision)
         };
-        table.lobes().iter().enumerate().map(stages).collect()
+        table.lobes().iter().enumerate().map(dispatches).collect()
     }
 
     /// The steps of one tile, and the buffer that they fill.
-    pub(crate) fn tile(&self, layout: &Layout, stages: &[Dispatches], units: Range<usize>) -> Result<Tile> {
+    pub(crate) fn tile(
+        &self,
+        layout: &ResultLayout,
+        dispatches: &[Dispatches],
+        units: Range<usize>,
+    ) -> Result<Tile> {
         let buffer = self.output(layout.bytes(units.len()));
-        let steps = self.fill(&buffer, stages, units)?;
+        let steps = self.fill(&buffer, dispatches, units)?;
         Ok(Tile { buffer, steps })
     }
 
@@ -232,37 +238,37 @@ impl Baker {
     pub(crate) fn fill(
         &self,
         buffer: &wgpu::Buffer,
-        stages: &[Dispatches],
+        dispatches: &[Dispatches],
         units: Range<usize>,
-    ) -> Result<Vec<Step>> {
+    ) -> Result<Vec<DispatchStep>> {
         let mut steps = Vec::new();
-        for stages in stages {
-            let Dispatches { inner, outer, .. } = stages;
+        for lobe in dispatches {
+            let Dispatches { inner, outer, .. } = lobe;
             if let (Some(rows), [quads]) = (&inner.rows, &inner.inputs[..]) {
                 self.value_steps(inner, (rows, quads), &units, buffer, &mut steps)?;
                 continue;
             }
-            let rows = stages.inner_units(&units);
-            let order = stages.order(&rows);
+            let rows = lobe.inner_units(&units);
+            let order = lobe.order(&rows);
             let order =
                 order.map(|order| self.init(bytemuck::cast_slice(&order), wgpu::BufferUsages::STORAGE));
             let order: Vec<_> = order.into_iter().collect();
             let range =
                 rows.start / inner.units * inner.per_unit..rows.end.div_ceil(inner.units) * inner.per_unit;
-            let job = Job { base: count(rows.start * inner.per_unit)?, ..inner.job };
+            let job = KernelJob { base: count(rows.start * inner.per_unit)?, ..inner.job };
             let mut results = rows.len() * inner.per_unit;
             let raw = |results: usize| self.output(results * 2 * inner.precision.bytes());
             let mut output = if outer.is_empty() { buffer.clone() } else { raw(results) };
-            let own = |range| match &inner.mapped {
-                Some(work) => self.points_of(inner, work, range),
+            let more_inputs = |range| match &inner.directions {
+                Some(rule) => self.points_of(inner, rule, range),
                 None => order.clone(),
             };
-            self.steps(inner, job, range, &own, &output, &mut steps)?;
+            self.steps(inner, job, range, &more_inputs, &output, &mut steps)?;
             for (k, sum) in outer.iter().enumerate() {
                 let is_last = k + 1 == outer.len();
                 let columns = results / sum.job.nodes as usize;
-                // Of what is spread over the table, the tile's own.
-                let rows = if is_last && stages.sources.is_some() {
+                // The last matrix of an interpolated table makes the rows of this tile alone.
+                let rows = if is_last && lobe.sources.is_some() {
                     units.clone()
                 } else {
                     0..sum.job.azimuths as usize
@@ -271,7 +277,7 @@ impl Baker {
                 let next = if is_last { buffer.clone() } else { raw(results) };
                 let tiles = columns.div_ceil(TILE_SUMS);
                 let range = rows.start / TILE_SUMS * tiles..rows.end.div_ceil(TILE_SUMS) * tiles;
-                let job = Job {
+                let job = KernelJob {
                     base: count(rows.start * columns)?,
                     columns: count(columns)?,
                     tiles: count(tiles)?,
@@ -284,29 +290,29 @@ impl Baker {
         Ok(steps)
     }
 
-    /// The dispatches of a stage for some invocations: as many as the cost asks for, or as fit a buffer of points. Each
-    /// has `more_inputs` of its own.
+    /// Adds the dispatches of a stage for some invocations, as many as the cost asks for, or as fit a buffer of points. Each
+    /// dispatch reads its own `more_inputs`.
     fn steps(
         &self,
         stage: &Stage,
-        job: Job,
+        job: KernelJob,
         range: Range<usize>,
         more_inputs: &dyn Fn(Range<usize>) -> Vec<wgpu::Buffer>,
         output: &wgpu::Buffer,
-        steps: &mut Vec<Step>,
+        steps: &mut Vec<DispatchStep>,
     ) -> Result<()> {
         let pipeline = self.pipeline(stage.kernel, stage.model, stage.channels, stage.precision)?;
-        let per_step = match stage.mapped {
+        let per_step = match stage.directions {
             Some(_) => (POINTS_PER_DISPATCH / stage.cost).max(1),
             None => (EVALUATIONS_PER_DISPATCH / stage.cost).clamp(WORKGROUP, INVOCATIONS_PER_DISPATCH),
         };
         for first in range.clone().step_by(per_step) {
             let end = (first + per_step).min(range.end);
-            let job = Job { first: count(first)?, end: count(end)?, ..job };
+            let job = KernelJob { first: count(first)?, end: count(end)?, ..job };
             let job = self.init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
-            let more = more_inputs(first..end);
-            let buffers = [&job, output].into_iter().chain(&stage.inputs).chain(&more);
-            steps.push(Step {
+            let inputs = more_inputs(first..end);
+            let buffers = [&job, output].into_iter().chain(&stage.inputs).chain(&inputs);
+            steps.push(DispatchStep {
                 pipeline: pipeline.clone(),
                 bind_group: self.bind(&pipeline, buffers.map(wgpu::Buffer::as_entire_binding)),
                 workgroups: [count((end - first).div_ceil(WORKGROUP))?, 1],
@@ -316,42 +322,42 @@ impl Baker {
         Ok(())
     }
 
-    /// The points of some results of a stage whose directions the host finds.
-    fn points_of(&self, stage: &Stage, work: &MappedWork, range: Range<usize>) -> Vec<wgpu::Buffer> {
+    /// Uploads the points of some inner integrals whose directions the host finds.
+    fn points_of(&self, stage: &Stage, rule: &DirectionRule, range: Range<usize>) -> Vec<wgpu::Buffer> {
         let upload = Upload { baker: self, precision: stage.precision };
-        upload.texels(&work.texels(range)).into()
+        upload.direction_sums(&rule.integrals(range)).into()
     }
 
-    /// The dispatches of a stage of values: windows of rows and of quads.
+    /// Adds the dispatches of a stage of values, by windows of rows and of quads.
     fn value_steps(
         &self,
         stage: &Stage,
-        (rows, quads): (&Rows, &wgpu::Buffer),
+        (rows, quads): (&ValueRows, &wgpu::Buffer),
         units: &Range<usize>,
         output: &wgpu::Buffer,
-        steps: &mut Vec<Step>,
+        steps: &mut Vec<DispatchStep>,
     ) -> Result<()> {
         const BYTES: u64 = (VALUE_WINDOW * QUAD_FACTORS * 16) as u64;
         let pipeline = &self.pipeline(stage.kernel, stage.model, stage.channels, stage.precision)?;
-        let groups = rows.of(units);
-        let all = groups.concat();
-        let rows = self.init(bytemuck::cast_slice(&all), wgpu::BufferUsages::STORAGE);
+        let groups = rows.groups(units);
+        let row_data = groups.concat();
+        let rows = self.init(bytemuck::cast_slice(&row_data), wgpu::BufferUsages::STORAGE);
         let windows = stage.per_unit.div_ceil(VALUE_WINDOW);
         let mut end = 0;
-        for (frame, group) in groups.iter().enumerate() {
+        for (phi_i, group) in groups.iter().enumerate() {
             let first = end;
             end += group.len();
             for window in 0..windows {
                 let quad = window * VALUE_WINDOW;
                 let columns = VALUE_WINDOW.min(stage.per_unit - quad);
-                let offset = (frame * windows + window) as u64 * BYTES;
+                let offset = (phi_i * windows + window) as u64 * BYTES;
                 let size = std::num::NonZeroU64::new(BYTES);
                 let binding = wgpu::BufferBinding { buffer: quads, offset, size };
                 let rows_per_step =
                     (EVALUATIONS_PER_DISPATCH / (columns * stage.cost)).clamp(1, ROWS_PER_DISPATCH);
                 for row in (first..end).step_by(rows_per_step) {
                     let rows_here = rows_per_step.min(end - row);
-                    let job = Job {
+                    let job = KernelJob {
                         first: count(row)?,
                         end: count(row + rows_here)?,
                         columns: count(columns)?,
@@ -366,7 +372,7 @@ impl Baker {
                         rows.as_entire_binding(),
                         wgpu::BindingResource::Buffer(binding.clone()),
                     ];
-                    steps.push(Step {
+                    steps.push(DispatchStep {
                         pipeline: pipeline.clone(),
                         bind_group: self.bind(pipeline, resources),
                         workgroups: [1, count(rows_here.div_ceil(4 * 8))?],
@@ -411,7 +417,7 @@ impl Baker {
         Ok(pipeline)
     }
 
-    /// The only bind group of a kernel: its resources in the order of their bindings.
+    /// Makes the only bind group of a kernel, its resources in the order of their bindings.
     pub(crate) fn bind<'a>(
         &self,
         pipeline: &wgpu::ComputePipeline,
@@ -423,12 +429,12 @@ impl Baker {
         self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
     }
 
-    /// Seconds spent so far on composing and validating shaders.
+    /// The seconds spent so far on composing and validating shaders.
     pub(crate) fn compose_seconds(&self) -> f64 {
         *self.composing.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A buffer with the given bytes. Not mapped: wgpu panics when it maps on a device that is lost.
+    /// Makes a buffer with the given bytes. It is not mapped, as wgpu panics when it maps on a device that is lost.
     pub(crate) fn init(&self, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
@@ -440,7 +446,7 @@ impl Baker {
         buffer
     }
 
-    /// A buffer for what kernels read, to be written later.
+    /// Makes an input buffer of kernels, to be written later.
     pub(crate) fn input(&self, bytes: usize) -> wgpu::Buffer {
         self.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
@@ -450,7 +456,7 @@ impl Baker {
         })
     }
 
-    /// A buffer for results. wgpu clears it when it is first used; kernels write all of it.
+    /// Makes a buffer for results. wgpu clears it when it is first used; kernels write all of it.
     pub(crate) fn output(&self, bytes: usize) -> wgpu::Buffer {
         self.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
@@ -465,20 +471,20 @@ fn is_value(table: &TablePlan) -> bool {
     table.quantity().is_value()
 }
 
-/// A count as the device takes it.
+/// Converts a count to u32, as the device takes it.
 pub(crate) fn count(n: usize) -> Result<u32> {
     u32::try_from(n)
         .map_err(|_| Error::Device(format!("{n} is more than a device counts to; take fewer samples")))
 }
 
 impl Prepared {
-    /// Records the baking. Does not submit or block.
+    /// Records the baking. It does not submit or block.
     pub fn encode(&self, encoder: &mut wgpu::CommandEncoder) {
         self.steps.iter().for_each(|step| step.encode(encoder));
     }
 }
 
-impl Step {
+impl DispatchStep {
     pub(crate) fn encode(&self, encoder: &mut wgpu::CommandEncoder) {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_pipeline(&self.pipeline);

@@ -1,6 +1,6 @@
-//! How long the device takes, by submitting and waiting: timestamps lie on some software drivers.
+//! Measures the seconds that the device takes, by submitting and waiting: timestamps lie on some software drivers.
 
-use crate::backend::gpu::baker::{Baker, EVALUATIONS_PER_DISPATCH, Layout, Step, Tile};
+use crate::backend::gpu::baker::{Baker, DispatchStep, EVALUATIONS_PER_DISPATCH, ResultLayout, Tile};
 use crate::backend::gpu::device::Device;
 use crate::base::error::{Error, Result};
 use crate::base::precision::Precision;
@@ -10,24 +10,24 @@ use crate::shader::Kernel;
 use crate::table::Values;
 
 /// A table that is ready to be baked again and again: pipelines are compiled and buffers touched.
-pub(crate) struct Warm<'a> {
+pub(crate) struct WarmTable<'a> {
     device: &'a Device,
-    layout: Layout,
+    layout: ResultLayout,
     tiles: Vec<Tile>,
-    /// Seconds of the host before the device has anything to do: nodes, factors, upload.
+    /// The seconds that the host spends on nodes, half-angle terms and upload before the device starts.
     pub prepare: f64,
 }
 
-/// What the device can do at most.
+/// The largest rates that the device reaches.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Rates {
-    /// Bytes written in a second.
+    /// The bytes written in a second.
     pub bytes: f64,
-    /// Multiplications and additions in a second.
+    /// The multiplications and additions in a second.
     pub operations: f64,
 }
 
-impl Warm<'_> {
+impl WarmTable<'_> {
     /// Bakes once, and returns the seconds from the first submission to the end of the last.
     pub fn run(&self) -> Result<f64> {
         let steps: Vec<_> = self.tiles.iter().flat_map(|tile| &tile.steps).collect();
@@ -48,24 +48,25 @@ impl Warm<'_> {
 
 impl Device {
     /// Makes a table ready, and bakes it once.
-    pub(crate) fn warm(&self, table: &TablePlan, precision: Precision) -> Result<Warm<'_>> {
-        let prepare = || -> Result<(Layout, Vec<Tile>)> {
-            let layout = Layout::new(table, precision);
-            let stages = self.baker.stages(table, precision, || self.known_turns())?;
-            let tiles = layout.tiles(&stages).into_iter();
-            let tiles = tiles.map(|units| self.baker.tile(&layout, &stages, units)).collect::<Result<_>>()?;
+    pub(crate) fn warm(&self, table: &TablePlan, precision: Precision) -> Result<WarmTable<'_>> {
+        let prepare = || -> Result<(ResultLayout, Vec<Tile>)> {
+            let layout = ResultLayout::new(table, precision);
+            let dispatches = self.baker.dispatches(table, precision, || self.known_turns())?;
+            let tiles = layout.tiles(&dispatches).into_iter();
+            let tiles =
+                tiles.map(|units| self.baker.tile(&layout, &dispatches, units)).collect::<Result<_>>()?;
             Ok((layout, tiles))
         };
         drop(prepare()?); // compiles
         let start = Stopwatch::start();
         let (layout, tiles) = prepare()?;
-        let warm = Warm { device: self, layout, tiles, prepare: start.seconds() };
+        let warm = WarmTable { device: self, layout, tiles, prepare: start.seconds() };
         warm.run()?;
         Ok(warm)
     }
 
     /// Reads a tile that was computed, and appends its values.
-    fn read_back(&self, tile: &Tile, layout: &Layout, values: &mut Values) -> Result<()> {
+    fn read_back(&self, tile: &Tile, layout: &ResultLayout, values: &mut Values) -> Result<()> {
         let staging = self.staging(tile.buffer.size());
         let encoder = self.baker.device.create_command_encoder(&Default::default());
         let flight = self.send(encoder, &tile.buffer, &staging, tile.buffer.size());
@@ -73,8 +74,8 @@ impl Device {
         self.land(&staging, flight, &mut |bytes| layout.append(bytes, values))
     }
 
-    /// As few submissions as the limit on a dispatch allows.
-    fn submit_all(&self, steps: &[&Step]) -> Result<()> {
+    /// Submits the steps in as few submissions as the limit on a dispatch allows.
+    fn submit_all(&self, steps: &[&DispatchStep]) -> Result<()> {
         let Baker { device, queue, .. } = &self.baker;
         let mut rest = steps;
         while !rest.is_empty() {
@@ -93,7 +94,7 @@ impl Device {
         Ok(())
     }
 
-    /// Measures what the device can do at most, by kernels that do nothing else.
+    /// Measures the rates by kernels that only store, or only compute.
     pub(crate) fn rates(&self) -> Result<Rates> {
         // 32 MiB, as four vectors of 16 bytes an invocation.
         const FILL_GROUPS: u32 = 2048;
@@ -107,7 +108,7 @@ impl Device {
         })
     }
 
-    /// The shortest of several runs, s.
+    /// The seconds of the shortest of several runs.
     fn probe(&self, kernel: Kernel, bytes: usize, groups: u32) -> Result<f64> {
         const RUNS: usize = 8;
         let Baker { device, queue, .. } = &self.baker;

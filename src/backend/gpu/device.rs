@@ -1,4 +1,4 @@
-//! Finding a device, and saying which one was taken and why.
+//! Finds and opens a device, and says which one was chosen and why.
 
 use crate::backend::gpu::baker::Baker;
 use crate::backend::gpu::driver_probe::Canary;
@@ -7,7 +7,7 @@ use std::fmt;
 use std::str::FromStr;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// What the user asks for.
+/// The device that the user asks for.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum DeviceChoice {
     /// The best GPU, else software Vulkan, else the CPU path.
@@ -31,15 +31,15 @@ impl FromStr for DeviceChoice {
     }
 }
 
-/// An adapter, and what it is.
+/// An adapter, with its name, kind and driver.
 #[derive(Debug, Clone)]
 pub struct Adapter {
-    /// What wgpu says of it.
+    /// The adapter's description by wgpu.
     pub info: wgpu::AdapterInfo,
     adapter: wgpu::Adapter,
 }
 
-/// A device that evaluates tables: one of gonio's own, or a caller's.
+/// A device that evaluates tables, opened by gonio or by the caller.
 pub struct Device {
     pub(crate) baker: Baker,
     info: wgpu::AdapterInfo,
@@ -47,7 +47,7 @@ pub struct Device {
     pub(crate) canary: OnceLock<Canary>,
 }
 
-/// Who opened a device, and so who hears of its errors.
+/// The opener of a device, whose handlers get its errors.
 enum Owner {
     /// gonio: its handlers keep the first error here.
     Gonio {
@@ -59,7 +59,7 @@ enum Owner {
     Caller,
 }
 
-/// All adapters that could bake, the best first; none in a build without any back end of wgpu.
+/// Lists all adapters that could bake, the best first; none in a build without any back end of wgpu.
 pub fn adapters() -> Vec<Adapter> {
     if wgpu::Instance::enabled_backend_features().is_empty() {
         return Vec::new();
@@ -78,7 +78,7 @@ pub fn adapters() -> Vec<Adapter> {
 }
 
 impl Adapter {
-    /// The best first.
+    /// The rank of the adapter, 0 for the best.
     fn rank(&self) -> u8 {
         match self.info.device_type {
             wgpu::DeviceType::DiscreteGpu => 0,
@@ -89,7 +89,7 @@ impl Adapter {
         }
     }
 
-    /// What kind of device it is, for people: `GPU` or `software Vulkan`.
+    /// The kind of the device, for people: `GPU` or `software Vulkan`.
     pub fn kind(&self) -> &'static str {
         kind(&self.info)
     }
@@ -107,7 +107,7 @@ impl Adapter {
             max_buffer_size: offered.max_buffer_size,
             ..wgpu::Limits::default()
         };
-        // What stores by words of 64 bits is faster on the CPU, and on no GPU.
+        // Stores of 64-bit words are faster on a software device, and on no GPU.
         let wide = match self.info.device_type {
             wgpu::DeviceType::Cpu => wgpu::Features::SHADER_INT64,
             _ => wgpu::Features::empty(),
@@ -127,8 +127,8 @@ impl Adapter {
         }));
         let lost = fault.clone();
         device.set_device_lost_callback(move |reason, why| {
-            let what = format!("the device is lost ({reason:?}) {why}");
-            lost.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(what);
+            let message = format!("the device is lost ({reason:?}) {why}");
+            lost.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(message);
         });
         Ok(Device {
             baker: Baker::new(&device, &queue),
@@ -140,8 +140,8 @@ impl Adapter {
 }
 
 impl Device {
-    /// An engine's own device and queue, which can do all that a device of gonio's own can: bake, evaluate points, check,
-    /// light.
+    /// Wraps an engine's device and queue, which can then do all that a device opened by gonio can: bake, evaluate points,
+    /// check, light.
     ///
     /// The engine's error handlers stay as they are; an error that gonio causes comes back as [`Error::Device`].
     /// Tables in f64 need [`wgpu::Features::SHADER_F64`]; without it the CPU path does them.
@@ -154,17 +154,17 @@ impl Device {
         }
     }
 
-    /// Does something with the device, and returns what the device finds wrong with it as an error.
-    pub(crate) fn guarded<T>(&self, work: impl FnOnce() -> Result<T>) -> Result<T> {
+    /// Calls `use_device`, and returns an error of the device that it caused as [`Error::Device`].
+    pub(crate) fn guarded<T>(&self, use_device: impl FnOnce() -> Result<T>) -> Result<T> {
         if let Owner::Gonio { .. } = self.owner {
-            let done = work()?;
+            let result = use_device()?;
             self.fault()?;
-            return Ok(done);
+            return Ok(result);
         }
         let filters =
             [wgpu::ErrorFilter::Validation, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Internal];
         let scopes = filters.map(|filter| self.baker.device.push_error_scope(filter));
-        let done = work();
+        let result = use_device();
         let mut fault = None;
         // The last one first, as they are nested.
         for scope in scopes.into_iter().rev() {
@@ -172,7 +172,7 @@ impl Device {
         }
         match fault {
             Some(fault) => Err(Error::Device(format!("{}: {fault}", self.name()))),
-            None => done,
+            None => result,
         }
     }
 
@@ -214,7 +214,7 @@ impl Device {
                 let adapter = found.ok_or_else(|| {
                     let names: Vec<_> = adapters.iter().map(|a| format!("\"{}\"", a.info.name)).collect();
                     Error::Device(if names.is_empty() {
-                        format!("no adapter is named \"{name}\": there is none at all. {INSTALL} The CPU path, --device cpu, needs none")
+                        format!("no adapter is named \"{name}\": there is none at all. {INSTALL} The device \"cpu\", which is the CPU path, needs none")
                     } else {
                         format!(
                             "no adapter is named \"{name}\"; there are {}, auto and cpu",
@@ -241,7 +241,7 @@ impl Device {
         }
     }
 
-    /// What wgpu says of its adapter.
+    /// The description of its adapter by wgpu.
     pub fn info(&self) -> &wgpu::AdapterInfo {
         &self.info
     }
@@ -286,7 +286,7 @@ impl Device {
     }
 }
 
-/// How to get a software device.
+/// The remedy where there is no device: how to install a software one.
 pub const INSTALL: &str = "Install a Vulkan driver; on Debian, software Vulkan is `apt-get install \
                            mesa-vulkan-drivers libvulkan1`.";
 

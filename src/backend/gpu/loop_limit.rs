@@ -1,19 +1,19 @@
-//! How many turns the loops of one invocation take. Some drivers stop an invocation's loops after 65,535 turns of all
-//! of them together, and say nothing: what is left of a sum is then missing from a table.
+//! Counts the turns that the loops of one invocation take. Some drivers silently stop an invocation's loops after 65,535
+//! turns of all of them together, and the rest of a sum is then missing from a table.
 
 use crate::base::error::{Error, Result};
-use crate::integrate::rule_set::{Inner, Work, WorkKind};
-use crate::integrate::slope_rule::SlopeWork;
+use crate::integrate::rule_set::{InnerRule, RuleKind, RuleSet};
+use crate::integrate::slope_rule::SlopeRule;
 use crate::plan::TablePlan;
 use crate::shader::VALUE_WINDOW;
 
-/// Turns that every driver runs: half of what the strictest one does. Nothing need be known of a driver below.
+/// The number of turns that every driver runs, half of the strictest one's. Tables with fewer need no driver probe.
 pub(crate) const SAFE_TURNS: u32 = 32_000;
 
-/// Refuses a table whose loops may be stopped. `known` says what is known to run, and is asked only if a table takes more
-/// than [`SAFE_TURNS`].
-pub(crate) fn check(table: &TablePlan, work: &Work, known: impl FnOnce() -> Result<u32>) -> Result<()> {
-    let turns = turns(work);
+/// Refuses a table whose loops the driver may stop. `known` returns the turns that are known to run; it is called only if
+/// a table takes more than [`SAFE_TURNS`].
+pub(crate) fn check(table: &TablePlan, rules: &RuleSet, known: impl FnOnce() -> Result<u32>) -> Result<()> {
+    let turns = turns(rules);
     if turns <= SAFE_TURNS as usize {
         return Ok(());
     }
@@ -29,38 +29,38 @@ pub(crate) fn check(table: &TablePlan, work: &Work, known: impl FnOnce() -> Resu
     )))
 }
 
-/// Turns of all loops of one invocation, at most, of the kernel that takes the most. The turn that finds a loop at
-/// its end is counted too.
-fn turns(work: &Work) -> usize {
-    match &work.kind {
+/// The largest number of turns of all loops of one invocation, over the kernels of a rule set. The turn that finds a loop
+/// at its end is counted too.
+fn turns(rules: &RuleSet) -> usize {
+    match &rules.kind {
         // Eight invocations share a window.
-        WorkKind::Values(_) => VALUE_WINDOW / 8 + 1,
-        WorkKind::Integrals { inner, outer } => {
+        RuleKind::Values(_) => VALUE_WINDOW / 8 + 1,
+        RuleKind::Integrals { inner, outer } => {
             let inner = match inner {
-                Inner::Slopes(work) => slopes(work),
-                Inner::Product { azimuths, .. } => in_blocks(azimuths.len()),
+                InnerRule::Slopes(rule) => slopes(rule),
+                InnerRule::Product { azimuths, .. } => in_blocks(azimuths.len()),
                 // And a loop over four α.
-                Inner::Samples(work) => in_blocks(work.chunk) + 5,
-                Inner::Mapped(work) => work.most() + 3 * work.most().div_ceil(32) + 1,
-                Inner::Analytic { .. } => 0,
+                InnerRule::Samples(rule) => in_blocks(rule.chunk) + 5,
+                InnerRule::Directions(rule) => in_blocks(rule.max_cost()) + rule.max_cost().div_ceil(32),
+                InnerRule::ClosedForm { .. } => 0,
             };
             outer.iter().map(|matrix| in_blocks(matrix.columns)).fold(inner, usize::max)
         }
     }
 }
 
-/// A sum in blocks of 32, as `product.wgsl`, `mapped.wgsl`, `sampling.wgsl` and `sum.wgsl` have it.
+/// The turns of a sum in blocks of 32, as `product.wgsl`, `mapped.wgsl`, `sampling.wgsl` and `sum.wgsl` have it.
 fn in_blocks(terms: usize) -> usize {
     terms + 2 * terms.div_ceil(32) + 1
 }
 
-/// `slopes.wgsl`: for both sides, azimuths and the nodes of each; and the results of four α. Invocations that run in
-/// step wait for the one with the most of each.
-fn slopes(work: &SlopeWork) -> usize {
+/// The turns of `slopes.wgsl`: for both sides, azimuths and the nodes of each, and the results of four α. Invocations
+/// that run in step wait for the one with the largest counts.
+fn slopes(rule: &SlopeRule) -> usize {
     let (sides, results) = (3, 5);
     let terms: usize = [0, 1]
         .map(|side| {
-            let counts = || work.tiles.iter().map(|tile| tile[side].counts);
+            let counts = || rule.tiles.iter().map(|tile| tile[side].counts);
             let azimuths = counts().map(|counts| counts.azimuths).max().unwrap_or(0);
             let nodes = counts().map(|counts| counts.nodes).max().unwrap_or(0);
             azimuths * (nodes + 2) + 1
@@ -78,9 +78,9 @@ mod tests {
     use crate::table::axis::{Axis, Variable};
     use crate::table::quantity::{RHO_DH, RHO_HH};
 
-    /// The warped rule stays within what every driver runs, over all α and μ: with room down to 1e-8, beyond which
-    /// exact Fresnel terms take more; by directions of the host, down to 1e-6, or to
-    /// 1e-5 of anisotropic models.
+    /// The warped rule takes no more turns than every driver runs, over all α and μ: with room down to 1e-8, beyond which
+    /// exact Fresnel terms take more. Rules by directions of the host stay within it down to 1e-6, or 1e-5 of anisotropic
+    /// models.
     #[test]
     fn the_warped_rule_is_safe_on_every_driver() {
         const STRICTEST: u32 = 65_535;
@@ -90,16 +90,16 @@ mod tests {
                 for quantity in [&RHO_DH, &RHO_HH] {
                     let rough = model.shape.map(|_| Axis::natural(Variable::Roughness, 96).unwrap());
                     let about = quantity.variables(model.is_anisotropic());
-                    let of = |&variable: &Variable| {
+                    let axis = |&variable: &Variable| {
                         let count = if variable == Variable::PhiI { 3 } else { 96 };
                         Axis::natural(variable, count).unwrap()
                     };
-                    let axes = rough.into_iter().chain(about.iter().map(of)).collect();
+                    let axes = rough.into_iter().chain(about.iter().map(axis)).collect();
                     let plan = TablePlan::basis("t", quantity, model, None, axes).unwrap();
                     let plan = plan.with_tolerance(tolerance).unwrap();
-                    let turns = turns(&Work::new(&plan, &plan.lobes()[0]));
+                    let turns = turns(&RuleSet::new(&plan, &plan.lobes()[0]));
                     let limit = match model.integral {
-                        // What is more is refused where it is not known to run.
+                        // A table that takes more is refused where that is not known to run.
                         Integral::Mapped(_) if tolerance < 0.9e-6 => u32::MAX,
                         Integral::Mapped(_) if model.is_anisotropic() && tolerance < 0.9e-5 => u32::MAX,
                         Integral::Mapped(_) => STRICTEST,

@@ -1,4 +1,4 @@
-//! The device side: composing the shaders that a plan needs, and recording their work.
+//! The device path: uploads a plan's rule sets, and records or runs the kernels that evaluate it.
 //!
 //! [`Baker`] works on a device that the caller owns and records into the caller's encoder; the
 //! headless bake is the same recording, split into submissions and read back.
@@ -16,8 +16,8 @@ mod texture;
 
 pub use baker::{Baker, Prepared, Recorded};
 #[cfg(feature = "lab")]
-pub(crate) use benchmark::{Rates, Warm};
+pub(crate) use benchmark::{Rates, WarmTable};
 pub use device::{Adapter, Device, DeviceChoice, INSTALL, adapters};
 pub use driver_probe::{ASKED_TURNS, Canary};
-pub(crate) use points::Points;
+pub(crate) use points::PointKernels;
 pub use texture::TextureFormat;

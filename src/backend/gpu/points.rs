@@ -1,9 +1,9 @@
-//! Values at a list of pairs of directions: chunk after chunk, the next one's factors made while the device
-//! computes.
+//! Evaluates a list of pairs of directions on a device, chunk after chunk: the host makes the next chunk's half-angle
+//! terms while the device computes.
 
-use crate::backend::gpu::baker::{Baker, Step, count};
+use crate::backend::gpu::baker::{Baker, DispatchStep, count};
 use crate::backend::gpu::device::Device;
-use crate::backend::gpu::dispatch::Job;
+use crate::backend::gpu::dispatch::KernelJob;
 use crate::backend::gpu::readback::Flight;
 use crate::backend::scaled_lobe::ScaledLobe;
 use crate::base::angles::Angles;
@@ -16,41 +16,41 @@ use crate::shader::Kernel;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Values of a chunk: some milliseconds of any device, and buffers that stay in a cache.
+/// The number of values of a chunk: they take some milliseconds on any device, and their buffers stay in a cache.
 const CHUNK: usize = 1 << 17;
-/// Settings of a chunk: what its factors cost is then little for each.
+/// The number of settings of a chunk, among which the cost of its half-angle terms is shared.
 const SETTINGS: usize = 64;
 const WORKGROUP: usize = 64;
 
 /// The lobes' kernels, and the buffers that all chunks share: the first touch of a buffer costs more than
 /// to compute what it holds.
-pub(crate) struct Points<'a> {
+pub(crate) struct PointKernels<'a> {
     device: &'a Device,
-    lobes: Vec<(wgpu::ComputePipeline, Job)>,
+    lobes: Vec<(wgpu::ComputePipeline, KernelJob)>,
     channels: usize,
-    factors: Vec<Factors>,
-    slots: [Slot; 2],
+    terms: Vec<PointTerms>,
+    slots: [ChunkBuffers; 2],
 }
 
-/// `Point` of `shaders/kernel/point.wgsl`.
-type Factors = [f32; POINT];
+/// The half-angle terms of a point: `Point` of `shaders/kernel/point.wgsl`.
+type PointTerms = [f32; POINT];
 
-/// One of two that take turns.
-struct Slot {
+/// The buffers of a chunk. Two of them take turns.
+struct ChunkBuffers {
     points: wgpu::Buffer,
     output: wgpu::Buffer,
     staging: wgpu::Buffer,
     flight: Option<(Flight, Chunk)>,
 }
 
-/// Some settings at some points.
+/// A part of the list: some settings at some points.
 #[derive(Clone)]
 struct Chunk {
     settings: Range<usize>,
     points: Range<usize>,
 }
 
-impl<'a> Points<'a> {
+impl<'a> PointKernels<'a> {
     pub fn new(device: &'a Device, lobes: &[Lobe]) -> Result<Self> {
         device.guarded(|| Self::open(device, lobes))
     }
@@ -60,23 +60,23 @@ impl<'a> Points<'a> {
         let lobe = |(k, lobe): (usize, &Lobe)| {
             let kernel = if k == 0 { Kernel::Points } else { Kernel::AddPoints };
             let pipeline = device.baker.pipeline(kernel, Some(lobe.model()), channels, Precision::F32)?;
-            Ok((pipeline, Job::new(lobe, 1.0)))
+            Ok((pipeline, KernelJob::new(lobe, 1.0)))
         };
         let bytes = CHUNK * 4 * channels;
-        let slot = || Slot {
-            points: device.baker.input(CHUNK * size_of::<Factors>()),
+        let slot = || ChunkBuffers {
+            points: device.baker.input(CHUNK * size_of::<PointTerms>()),
             output: device.baker.output(bytes),
             staging: device.staging(bytes as u64),
             flight: None,
         };
         let lobes = lobes.iter().enumerate().map(lobe).collect::<Result<_>>()?;
-        Ok(Self { device, lobes, channels, factors: Vec::new(), slots: [slot(), slot()] })
+        Ok(Self { device, lobes, channels, terms: Vec::new(), slots: [slot(), slot()] })
     }
 
-    /// Other weights for the same models.
+    /// Sets other weights for the same models.
     pub fn set(&mut self, lobes: &[Lobe]) {
         for ((_, job), lobe) in self.lobes.iter_mut().zip(lobes) {
-            *job = Job::new(lobe, 1.0);
+            *job = KernelJob::new(lobe, 1.0);
         }
     }
 
@@ -101,8 +101,9 @@ impl<'a> Points<'a> {
             .collect();
         for k in 0..=chunks.len() {
             if let Some(chunk) = chunks.get(k) {
-                let factors = angles[chunk.points.clone()].par_iter().map(|angles| factors(angles.factors()));
-                factors.collect_into_vec(&mut self.factors);
+                let terms =
+                    angles[chunk.points.clone()].par_iter().map(|angles| point_terms(angles.factors()));
+                terms.collect_into_vec(&mut self.terms);
                 self.launch(k % 2, chunk, &settings[chunk.settings.clone()])?;
             }
             if k > 0 {
@@ -112,41 +113,41 @@ impl<'a> Points<'a> {
         Ok(())
     }
 
-    /// Starts a chunk, whose factors are made.
+    /// Starts a chunk, whose half-angle terms are made.
     fn launch(&mut self, slot: usize, chunk: &Chunk, settings: &[Vec<ScaledLobe>]) -> Result<()> {
-        let Self { device, lobes, channels, factors, slots } = self;
+        let Self { device, lobes, channels, terms, slots } = self;
         let Baker { device: wgpu, queue, .. } = &device.baker;
         let slot = &mut slots[slot];
-        queue.write_buffer(&slot.points, 0, bytemuck::cast_slice(factors));
+        queue.write_buffer(&slot.points, 0, bytemuck::cast_slice(terms));
         let mut encoder = wgpu.create_command_encoder(&Default::default());
         for (k, setting) in settings.iter().enumerate() {
             for ((pipeline, job), ScaledLobe { alpha, scale }) in lobes.iter().zip(setting) {
-                let (end, base) = (count(factors.len())?, count(k * factors.len())?);
-                let job = Job { end, base, alpha: *alpha as f32, ..*job };
+                let (end, base) = (count(terms.len())?, count(k * terms.len())?);
+                let job = KernelJob { end, base, alpha_or_bound: *alpha as f32, ..*job };
                 let job = device.baker.init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
-                // A lobe with a factor has points of its own, whose weights are that.
+                // A lobe with factors has its own points, whose weights are the scale.
                 let weighed = (!scale.is_one()).then(|| {
-                    let times = |&point: &Factors| {
+                    let with_scale = |&point: &PointTerms| {
                         let [mu_i, mu_e] = POINT_MUS.map(|k| f64::from(point[k]));
                         let mut point = point;
-                        point[POINT_WEIGHT] = scale.at(mu_i, mu_e) as f32;
+                        point[POINT_WEIGHT] = scale.value(mu_i, mu_e) as f32;
                         point
                     };
-                    let weighed: Vec<_> = factors.par_iter().map(times).collect();
+                    let weighed: Vec<_> = terms.par_iter().map(with_scale).collect();
                     device.baker.init(bytemuck::cast_slice(&weighed), wgpu::BufferUsages::STORAGE)
                 });
                 let points = weighed.as_ref().unwrap_or(&slot.points);
                 let buffers = [&job, &slot.output, points];
-                let step = Step {
+                let step = DispatchStep {
                     pipeline: pipeline.clone(),
                     bind_group: device.baker.bind(pipeline, buffers.map(wgpu::Buffer::as_entire_binding)),
-                    workgroups: [count(factors.len().div_ceil(WORKGROUP))?, 1],
-                    evaluations: factors.len() as u64,
+                    workgroups: [count(terms.len().div_ceil(WORKGROUP))?, 1],
+                    evaluations: terms.len() as u64,
                 };
                 step.encode(&mut encoder);
             }
         }
-        let bytes = settings.len() * factors.len() * *channels * 4;
+        let bytes = settings.len() * terms.len() * *channels * 4;
         slot.flight = Some((device.send(encoder, &slot.output, &slot.staging, bytes as u64), chunk.clone()));
         Ok(())
     }
@@ -168,11 +169,11 @@ impl<'a> Points<'a> {
     }
 }
 
-fn factors((pair, azimuth): (Pair, Azimuth)) -> Factors {
+fn point_terms((pair, azimuth): (Pair, Azimuth)) -> PointTerms {
     Sample { pair, azimuth, weight: 1.0 }.to_array().map(|x| x as f32)
 }
 
-/// 0..`n` in pieces of `most`.
-fn ranges(n: usize, most: usize) -> impl Iterator<Item = Range<usize>> {
-    (0..n).step_by(most).map(move |first| first..(first + most).min(n))
+/// Splits 0..`n` into ranges of at most `length`.
+fn ranges(n: usize, length: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..n).step_by(length).map(move |first| first..(first + length).min(n))
 }

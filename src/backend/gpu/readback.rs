@@ -1,7 +1,7 @@
-//! The headless bake: the same recording, in short submissions, read back while the next tile is
-//! computed.
+//! Evaluates a table without an embedder: the same recording, in short submissions, read back while the device computes
+//! the next tile.
 
-use crate::backend::gpu::baker::{Baker, EVALUATIONS_PER_DISPATCH, Layout};
+use crate::backend::gpu::baker::{Baker, EVALUATIONS_PER_DISPATCH, ResultLayout};
 use crate::backend::gpu::device::Device;
 use crate::backend::gpu::dispatch::Dispatches;
 use crate::base::error::{Error, Result};
@@ -13,12 +13,12 @@ use crate::table::Values;
 use std::ops::Range;
 use std::sync::mpsc::{self, Receiver};
 
-/// What the device does in one submission, after which a bake can be stopped: as much as one dispatch may.
+/// The number of evaluations of one submission, after which a bake can be stopped: as many as one dispatch may make.
 const EVALUATIONS_PER_SUBMISSION: u64 = EVALUATIONS_PER_DISPATCH as u64;
 
-/// Where a tile is computed and where the host reads it. Two of them take turns: the first touch of a
+/// The buffers in which a tile is computed and from which the host reads it. Two of them take turns: the first touch of a
 /// buffer costs more than to compute what it holds.
-struct Slot {
+struct TileBuffers {
     output: wgpu::Buffer,
     staging: wgpu::Buffer,
     /// The tile on its way, if there is one, and the share of the table's work that nobody waited for yet.
@@ -33,83 +33,85 @@ pub(crate) struct Flight {
 }
 
 impl Device {
-    /// The values of a table, row-major, channels last. `tick` is called as work is done, with its
-    /// share of the table, and stops it by an error.
+    /// Evaluates the values of a table, row-major, channels last. It calls `tick` as it goes on, with a share of the table;
+    /// an error from `tick` stops it.
     pub(crate) fn evaluate(
         &self,
         table: &TablePlan,
         precision: Precision,
-        times: &mut Timings,
+        timings: &mut Timings,
         tick: &(impl Fn(f64) -> Result<()> + Sync),
     ) -> Result<Values> {
-        let layout = Layout::new(table, precision);
+        let layout = ResultLayout::new(table, precision);
         let mut values = layout.values(layout.units);
-        self.guarded(|| self.tiles(table, &layout, None, times, tick, &mut values, &mut |_, _| Ok(())))?;
+        self.guarded(|| self.tiles(table, &layout, None, timings, tick, &mut values, &mut |_, _| Ok(())))?;
         Ok(values)
     }
 
-    /// The values of some rows of a table of values at a time, in f32 (a row is all azimuths of an α and a
-    /// pair): `sink` gets each of `tiles` in order, while the device computes the next.
+    /// Evaluates a table of values tile by tile, in f32, and hands each of `tiles` to `sink` in order, while the device
+    /// computes the next. A tile is a range of rows: all azimuths of an α and a pair.
     #[cfg(feature = "batch")]
     pub(crate) fn stream(
         &self,
         table: &TablePlan,
         tiles: &[Range<usize>],
-        times: &mut Timings,
+        timings: &mut Timings,
         sink: &mut dyn FnMut(usize, &[f32]) -> Result<()>,
     ) -> Result<()> {
-        let layout = Layout::new(table, Precision::F32);
+        let layout = ResultLayout::new(table, Precision::F32);
         let mut values = layout.values(0);
-        let mut land = |k: usize, values: &mut Values| {
+        let mut hand_over = |k: usize, values: &mut Values| {
             sink(k, &values.to_f32())?;
             values.clear();
             Ok(())
         };
-        self.guarded(|| self.tiles(table, &layout, Some(tiles), times, &|_| Ok(()), &mut values, &mut land))
+        self.guarded(|| {
+            self.tiles(table, &layout, Some(tiles), timings, &|_| Ok(()), &mut values, &mut hand_over)
+        })
     }
 
-    /// Appends the values of tile after tile to `values`; `sink` looks at them after each, and may take them.
+    /// Appends the values of tile after tile to `values`, and calls `sink` after each, which may take them.
     #[allow(clippy::too_many_arguments)]
     fn tiles(
         &self,
         table: &TablePlan,
-        layout: &Layout,
+        layout: &ResultLayout,
         tiles: Option<&[Range<usize>]>,
-        times: &mut Timings,
+        timings: &mut Timings,
         tick: &impl Fn(f64) -> Result<()>,
         values: &mut Values,
         sink: &mut dyn FnMut(usize, &mut Values) -> Result<()>,
     ) -> Result<()> {
         let start = Stopwatch::start();
         let composed = self.baker.compose_seconds();
-        let stages = self.baker.stages(table, layout.precision, || self.known_turns())?;
-        let tiles = tiles.map_or_else(|| layout.tiles(&stages), <[_]>::to_vec);
+        let dispatches = self.baker.dispatches(table, layout.precision, || self.known_turns())?;
+        let tiles = tiles.map_or_else(|| layout.tiles(&dispatches), <[_]>::to_vec);
         let largest = layout.bytes(tiles.iter().map(Range::len).max().unwrap_or(0));
         let mut slots: Vec<_> = tiles.iter().take(2).map(|_| self.slot(largest)).collect();
-        times.compile += start.seconds();
+        timings.compile += start.seconds();
 
         for k in 0..=tiles.len() {
             if let Some(units) = tiles.get(k) {
                 let share = units.len() as f64 / layout.units as f64;
-                self.launch(&mut slots[k % 2], layout, &stages, units, share, times, tick)?;
+                self.launch(&mut slots[k % 2], layout, &dispatches, units, share, timings, tick)?;
             }
             let landing = k.checked_sub(1).and_then(|last| Some((last, slots.get_mut(last % 2)?)));
-            if let Some((last, Slot { staging, flight, .. })) = landing
+            if let Some((last, TileBuffers { staging, flight, .. })) = landing
                 && let Some((flight, share)) = flight.take()
             {
                 let start = Stopwatch::start();
                 self.arrive(&flight)?;
-                times.dispatch += start.seconds();
+                timings.dispatch += start.seconds();
                 let start = Stopwatch::start();
                 self.land(staging, flight, &mut |bytes| layout.append(bytes, values))?;
-                times.readback += start.seconds();
+                timings.readback += start.seconds();
                 sink(last, values)?;
                 tick(share)?;
             }
         }
         let composing = self.baker.compose_seconds() - composed;
-        times.compose += composing;
-        times.compile -= composing;
+        timings.compose += composing;
+        timings.compile -= composing;
         Ok(())
     }
 
@@ -117,18 +119,18 @@ impl Device {
     #[allow(clippy::too_many_arguments)]
     fn launch(
         &self,
-        slot: &mut Slot,
-        layout: &Layout,
-        stages: &[Dispatches],
+        slot: &mut TileBuffers,
+        layout: &ResultLayout,
+        dispatches: &[Dispatches],
         units: &Range<usize>,
         share: f64,
-        times: &mut Timings,
+        timings: &mut Timings,
         tick: &impl Fn(f64) -> Result<()>,
     ) -> Result<()> {
         let Baker { device, queue, .. } = &self.baker;
         let start = Stopwatch::start();
-        let steps = self.baker.fill(&slot.output, stages, units.clone())?;
-        times.compile += start.seconds();
+        let steps = self.baker.fill(&slot.output, dispatches, units.clone())?;
+        timings.compile += start.seconds();
         let start = Stopwatch::start();
         let all: u64 = steps.iter().map(|step| step.evaluations).sum();
         let part = |evaluations: u64| share * evaluations as f64 / all.max(1) as f64;
@@ -148,11 +150,11 @@ impl Device {
         }
         let bytes = layout.bytes(units.len()) as u64;
         slot.flight = Some((self.send(encoder, &slot.output, &slot.staging, bytes), left));
-        times.dispatch += start.seconds();
+        timings.dispatch += start.seconds();
         Ok(())
     }
 
-    /// Submits what is recorded, and after it the copy of a result to where the host reads it.
+    /// Submits the recorded steps, and after them the copy of the result to the buffer that the host reads.
     pub(crate) fn send(
         &self,
         mut encoder: wgpu::CommandEncoder,
@@ -170,12 +172,12 @@ impl Device {
         Flight { last, mapped, bytes }
     }
 
-    /// Waits until a result is there.
+    /// Waits until a result has arrived.
     pub(crate) fn arrive(&self, flight: &Flight) -> Result<()> {
         self.poll(wgpu::PollType::Wait { submission_index: Some(flight.last.clone()), timeout: None })
     }
 
-    /// Shows the bytes of a result that is there.
+    /// Hands the bytes of a result that has arrived to `take`.
     pub(crate) fn land(
         &self,
         staging: &wgpu::Buffer,
@@ -192,20 +194,20 @@ impl Device {
         Ok(())
     }
 
-    /// Waits for all that was submitted.
+    /// Waits for all submissions.
     pub(crate) fn wait(&self) -> Result<()> {
         self.poll(wgpu::PollType::wait_indefinitely())
     }
 
-    fn poll(&self, what: wgpu::PollType) -> Result<()> {
-        let polled = self.baker.device.poll(what);
+    fn poll(&self, condition: wgpu::PollType) -> Result<()> {
+        let polled = self.baker.device.poll(condition);
         self.fault()?;
         polled.map_err(|e| Error::Device(format!("{}: {e}", self.name())))?;
         Ok(())
     }
 
-    fn slot(&self, bytes: usize) -> Slot {
-        Slot { output: self.baker.output(bytes), staging: self.staging(bytes as u64), flight: None }
+    fn slot(&self, bytes: usize) -> TileBuffers {
+        TileBuffers { output: self.baker.output(bytes), staging: self.staging(bytes as u64), flight: None }
     }
 
     pub(crate) fn staging(&self, bytes: u64) -> wgpu::Buffer {

@@ -1,4 +1,4 @@
-//! A table as a texture, without leaving the device.
+//! Bakes a table into a texture, without leaving the device.
 
 use crate::backend::gpu::baker::{Baker, Recorded};
 use crate::base::error::{Error, Result};
@@ -40,7 +40,7 @@ impl TextureFormat {
     }
 }
 
-/// `Packing` of `shaders/kernel/pack.wgsl`.
+/// The uniforms of the packing kernel: `Packing` of `shaders/kernel/pack.wgsl`.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 struct Packing {

@@ -2,7 +2,7 @@
 
 use crate::base::error::Result;
 use crate::base::precision::Precision;
-use crate::integrate::rule_set::Work;
+use crate::integrate::rule_set::RuleSet;
 use crate::plan::TablePlan;
 use crate::table::ErrorKind;
 use crate::table::rule::Rule;
@@ -43,7 +43,7 @@ pub(super) fn candidates(
                 let plan =
                     if let Some(tolerance) = tolerance { plan.with_tolerance(tolerance)? } else { plan };
                 let evaluations: u64 =
-                    plan.lobes().iter().map(|lobe| Work::new(&plan, lobe).evaluations()).sum();
+                    plan.lobes().iter().map(|lobe| RuleSet::new(&plan, lobe).evaluations()).sum();
                 Ok((plan, evaluations))
             };
             let method = rule.name();

@@ -6,7 +6,7 @@ use crate::base::error::Result;
 use crate::base::timings::Timings;
 use crate::check;
 use crate::check::Check;
-use crate::integrate::rule_set::Work;
+use crate::integrate::rule_set::RuleSet;
 use crate::model::{Integral, Model};
 use crate::plan::TablePlan;
 use crate::table::axis::{Axis, Variable};
@@ -76,7 +76,7 @@ pub fn costs(
                 table.values.iter().zip(&truth).map(|(value, truth): (f64, _)| (value - truth).abs());
             // f64::max loses NaN.
             let error = differences.fold(0.0, |most, x| if x > most || x.is_nan() { x } else { most });
-            let evaluations = Work::new(&plan, &plan.lobes()[0]).evaluations() / plan.texels() as u64;
+            let evaluations = RuleSet::new(&plan, &plan.lobes()[0]).evaluations() / plan.texels() as u64;
             costs.push(Cost {
                 model: model.name,
                 quantity: quantity.name,

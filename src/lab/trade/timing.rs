@@ -6,7 +6,7 @@ use crate::bake::Evaluator;
 use crate::base::error::{Error, Result};
 use crate::base::precision::Precision;
 use crate::base::timings::Stopwatch;
-use crate::integrate::rule_set::Work;
+use crate::integrate::rule_set::RuleSet;
 use crate::plan::TablePlan;
 use crate::table::storage::{Storage, Stored};
 use crate::table::{ErrorKind, Values};
@@ -30,7 +30,7 @@ impl Timing {
 
 /// A table that is ready to be run.
 enum Warm<'a> {
-    Device(gpu::Warm<'a>),
+    Device(gpu::WarmTable<'a>),
     Cpu { plan: &'a TablePlan, prepare: f64 },
 }
 
@@ -52,7 +52,7 @@ pub(super) fn time(
         Warm::Device(warm) => warm.values()?,
         Warm::Cpu { plan, .. } => Values::F64(cpu::evaluate(plan, &|_| Ok::<_, Error>(()))?),
     };
-    let (Warm::Device(gpu::Warm { prepare, .. }) | Warm::Cpu { prepare, .. }) = warm;
+    let (Warm::Device(gpu::WarmTable { prepare, .. }) | Warm::Cpu { prepare, .. }) = warm;
     Ok(Timing { prepare, runs, values })
 }
 
@@ -104,7 +104,7 @@ impl<'a> Warm<'a> {
             Evaluator::Device(device) => Self::Device(device.warm(plan, precision)?),
             Evaluator::Cpu => {
                 let start = Stopwatch::start();
-                plan.lobes().iter().for_each(|lobe| drop(Work::new(plan, lobe)));
+                plan.lobes().iter().for_each(|lobe| drop(RuleSet::new(plan, lobe)));
                 Self::Cpu { plan, prepare: start.seconds() }
             }
         })

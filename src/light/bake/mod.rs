@@ -8,7 +8,7 @@ mod radiosity;
 use crate::bake::{Evaluator, Observer};
 use crate::base::error::{Error, Result};
 use crate::base::timings::Stopwatch;
-use crate::check::{Check, Tally, reference_of_model, sample};
+use crate::check::{Check, ErrorTally, reference_of_model, sample};
 use crate::light::exitant::Integrated;
 use crate::light::{Frame, Light};
 use crate::model::lobe::Lobe;
@@ -104,7 +104,7 @@ impl Order<'_> {
         let Values { rgb: values, rule, precision, estimate, seconds } = values;
         let floor = floor * largest(&values);
         let stored: Vec<f32> = values.as_flattened().iter().map(|&x| x as f32).collect();
-        let mut tally = Tally::new(TableError::unmeasured(quantity.error, Some(floor), estimate));
+        let mut tally = ErrorTally::new(TableError::unmeasured(quantity.error, Some(floor), estimate));
         for (texel, truth) in truths {
             let channels = stored[3 * texel..].iter().map(|&x| f64::from(x));
             tally.add(axes, *texel, truth.iter().zip(channels).map(|(&truth, value)| (value, truth)));

@@ -3,7 +3,7 @@
 mod harmonics;
 mod irradiance;
 
-use crate::backend::gpu::baker::{Baker, Step};
+use crate::backend::gpu::baker::{Baker, DispatchStep};
 use crate::backend::gpu::device::Device;
 use crate::base::error::Result;
 use crate::base::precision::Precision;
@@ -45,7 +45,7 @@ impl<'a> Place<'a> {
         let Baker { device: own, .. } = &device.baker;
         let job = device.baker.init(job, wgpu::BufferUsages::UNIFORM);
         let buffers = [&job, output].into_iter().chain(inputs.iter().copied());
-        let step = Step {
+        let step = DispatchStep {
             pipeline: pipeline.clone(),
             bind_group: device.baker.bind(pipeline, buffers.map(wgpu::Buffer::as_entire_binding)),
             workgroups: [crate::backend::gpu::baker::count(invocations.div_ceil(WORKGROUP))?, 1],

@@ -17,7 +17,7 @@ use crate::bake::points::Points;
 use crate::bake::{Evaluator, Observer};
 use crate::base::angles::Angles;
 use crate::base::error::{Error, Result};
-use crate::integrate::scale::Scale;
+use crate::integrate::scale::LobeScale;
 use crate::light::irradiance;
 use crate::light::{Frame, Light, direction};
 use crate::model::Integral;
@@ -113,7 +113,7 @@ fn delta(lobe: &Lobe, theta_e: f64) -> Result<[f64; 2]> {
             return Err(Error::input(why));
         }
     };
-    let factor = Scale::new(lobe.factors(), lobe.roughness()).at(mu, mu);
+    let factor = LobeScale::new(lobe.factors(), lobe.roughness()).value(mu, mu);
     Ok(components.map(|component| factor * component))
 }
 

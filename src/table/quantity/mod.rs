@@ -1,11 +1,11 @@
-//! The quantities that can be tabulated, of a BRDF and of light. A quantity is a file here that says all there is to
-//! say of it, and a line of the registry.
+//! The quantities that can be tabulated, of a BRDF and of light. A quantity is a file here that defines it, and a
+//! line of the registry.
 
 use crate::base::error::{Error, Result};
 use crate::table::ErrorKind;
 use crate::table::axis::Variable;
 
-/// What a table holds.
+/// A quantity that a table holds.
 #[derive(Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Quantity {
@@ -17,22 +17,22 @@ pub struct Quantity {
     pub unit: &'static str,
     /// One line for people.
     pub summary: &'static str,
-    /// The directions it runs over, slowest first; a subject's roughness comes before them. Of an integral the first
+    /// The variables of its directions, slowest first; a subject's roughness comes before them. Of an integral the first
     /// is the zenith angle of the fixed direction, or its cosine.
     pub variables: &'static [Variable],
-    /// The same where a lobe tells azimuths from each other.
+    /// The variables of its directions where a lobe is anisotropic.
     pub anisotropic_variables: &'static [Variable],
-    /// How errors are counted.
+    /// The kind of its errors, absolute or relative.
     pub error: ErrorKind,
-    /// How its values follow from a BRDF, or that they are light's.
+    /// The way its values follow from a BRDF, or that they are light's.
     pub evaluation: Evaluation,
-    /// Which values are possible.
+    /// The values that are possible.
     pub limits: Limits,
     /// Whether a table of it must meet the tolerance. The error of an approximation is a result and not a fault.
     pub is_promised: bool,
 }
 
-/// How the values of a quantity are evaluated.
+/// The evaluation of a quantity's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Evaluation {
     /// f itself.
@@ -41,11 +41,11 @@ pub enum Evaluation {
     Directional(FixedDirection),
     /// The cosine-weighted mean over ωi of ∫ f cos θe dωe.
     Hemispherical,
-    /// By the bakers of light. No plan of a BRDF has such a quantity.
+    /// The bakers of light evaluate it; no plan of a BRDF has such a quantity.
     Light,
 }
 
-/// The direction that an integral over directions keeps.
+/// The direction that an integral over directions keeps fixed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FixedDirection {
     /// ωi: the integral is over ωe.
@@ -54,7 +54,7 @@ pub enum FixedDirection {
     Exitant,
 }
 
-/// Which values a quantity can have.
+/// The values that a quantity can have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Limits {
     /// Finite values of either sign.
@@ -92,7 +92,7 @@ quantities! {
 }
 
 impl Quantity {
-    /// The directions it runs over, of subjects that tell azimuths from each other or not.
+    /// The variables of its directions, for anisotropic or isotropic subjects.
     pub fn variables(&self, anisotropic: bool) -> &'static [Variable] {
         if anisotropic { self.anisotropic_variables } else { self.variables }
     }
@@ -107,12 +107,12 @@ impl Quantity {
         matches!(self.evaluation, Evaluation::Directional(_) | Evaluation::Hemispherical)
     }
 
-    /// Whether it is light's, and of no BRDF.
+    /// Whether it is a quantity of light, which no BRDF has.
     pub fn is_of_light(&self) -> bool {
         self.evaluation == Evaluation::Light
     }
 
-    /// The direction that its integral keeps.
+    /// The direction that its integral keeps fixed.
     pub fn fixed_direction(&self) -> Option<FixedDirection> {
         match self.evaluation {
             Evaluation::Directional(fixed) => Some(fixed),
@@ -126,14 +126,14 @@ impl Quantity {
         value.is_finite() && (self.limits == Limits::Finite || value >= 0.0)
     }
 
-    /// What [`allows`](Self::allows) asks for, in words.
+    /// The values that [`allows`](Self::allows) accepts, in words.
     pub(crate) fn allowed(&self) -> String {
         let subject = if self.is_of_light() { "light" } else { "a BRDF" };
         let sign = if self.limits == Limits::Finite { "" } else { " and non-negative" };
         format!("{subject} is finite{sign}")
     }
 
-    /// Why a BRDF has no such quantity, if it is light's.
+    /// The reason why a BRDF has no such quantity, if it is light's.
     pub(crate) fn refused(&self) -> Option<String> {
         let name = self.name;
         self.is_of_light()
@@ -168,7 +168,7 @@ pub fn find(name: &str) -> Result<&'static Quantity> {
     }
 }
 
-/// The names of quantities in a row.
+/// The names of quantities, separated by commas.
 fn names(quantities: impl Iterator<Item = &'static Quantity>) -> String {
     quantities.map(|quantity| quantity.name).collect::<Vec<_>>().join(", ")
 }

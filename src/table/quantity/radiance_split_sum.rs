@@ -1,4 +1,4 @@
-//! What the split sum makes of the exitant radiance.
+//! The split sum's approximation of the exitant radiance.
 
 use crate::table::ErrorKind;
 use crate::table::axis::Variable;

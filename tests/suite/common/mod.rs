@@ -108,7 +108,7 @@ impl Tried {
                 let error = (value - truth).abs();
                 let set = &plan.lobes()[0].parameters();
                 // NaN is no number that is small enough.
-                let place = table.place(texel);
+                let place = table.coordinates(texel);
                 assert!(
                     error <= tolerance + beyond,
                     "{plan} ({}) {set:?}: {value}, {truth} at {place}",
