@@ -145,6 +145,6 @@ fn irradiance_of_each(evaluator: &Evaluator, light: &Light, normals: &[[f64; 3]]
         let closed = |&normal: &[f64; 3]| irradiance::in_closed_form(light, normal).unwrap_or([f64::NAN; 3]);
         return Ok(normals.iter().map(closed).collect());
     };
-    let map = irradiance::Prepared::new(map);
+    let map = irradiance::PreparedMap::new(map);
     map.of(evaluator, normals, 2, &|_| Ok(()))
 }
