@@ -1,4 +1,4 @@
-//! Weights as polynomials in what a material takes: numbers where that is the same everywhere, else formulas in words.
+//! Weights as polynomials in a material's quantities: numbers if those are constant, else formulas in text.
 
 use std::fmt;
 
@@ -12,7 +12,7 @@ struct Monomial {
     terms: Vec<Term>,
 }
 
-/// What a material takes of a quantity: its factor, and how little textures leave of that.
+/// A material's quantity: its factor, and the least value that textures leave of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FormulaInput {
     /// What formulas call it.
@@ -77,18 +77,18 @@ impl FormulaInput {
 }
 
 impl Formula {
-    /// A number.
+    /// Builds a constant.
     pub fn number(number: f64) -> Self {
         Self(vec![Monomial { number, terms: Vec::new() }])
     }
 
-    /// The sum of two.
+    /// Adds two formulas.
     pub fn plus(mut self, other: Self) -> Self {
         self.0.extend(other.0);
         self
     }
 
-    /// The product of two.
+    /// Multiplies two formulas.
     pub fn times(&self, other: &Self) -> Self {
         let product = |a: &Monomial, b: &Monomial| Monomial {
             number: a.number * b.number,
@@ -107,24 +107,28 @@ impl Formula {
         self.0.iter().all(Monomial::is_zero) || !self.varies() && self.value() == [0.0; 3]
     }
 
-    /// R, G and B where no texture has a say.
+    /// Returns R, G and B if no texture varies.
     pub fn value(&self) -> [f64; 3] {
         self.at(&|_| None)
     }
 
-    /// R, G and B where these quantities have these values, the others their own.
+    /// Evaluates R, G and B with these values for some quantities, and the stored values for the others.
     pub fn at(&self, given: &dyn Fn(&str) -> Option<f64>) -> [f64; 3] {
-        let of = |term: &Term| term.of(given(term.of.name).map_or(term.of.value, |x| [x; 3]));
+        let evaluate = |term: &Term| term.of(given(term.of.name).map_or(term.of.value, |x| [x; 3]));
         let product = |product: &Monomial| {
-            product.terms.iter().map(of).fold([product.number; 3], |a, b| [0, 1, 2].map(|c| a[c] * b[c]))
+            product
+                .terms
+                .iter()
+                .map(evaluate)
+                .fold([product.number; 3], |a, b| [0, 1, 2].map(|c| a[c] * b[c]))
         };
         // The first as it is: 0 + x is x, but −0.
         self.0.iter().map(product).reduce(|a, b| [0, 1, 2].map(|c| a[c] + b[c])).unwrap_or_default()
     }
 
-    /// What it may reach.
-    pub fn most(&self) -> f64 {
-        let product = |p: &Monomial| p.terms.iter().map(Term::most).fold(p.number.max(0.0), |a, b| a * b);
+    /// Returns its largest possible value.
+    pub fn maximum(&self) -> f64 {
+        let product = |p: &Monomial| p.terms.iter().map(Term::maximum).fold(p.number.max(0.0), |a, b| a * b);
         self.0.iter().map(product).sum()
     }
 
@@ -153,7 +157,7 @@ impl Term {
         if self.is_rest { value.map(|x| 1.0 - x) } else { value }
     }
 
-    fn most(&self) -> f64 {
+    fn maximum(&self) -> f64 {
         let [low, high] = self.of.range();
         if self.is_rest { 1.0 - low } else { high }
     }

@@ -92,8 +92,8 @@ pub(super) fn check(
         }
     }
     // The first of equals.
-    let most = places.iter().rev().max_by(|a, b| a.rho.certain().total_cmp(&b.rho.certain()));
-    Ok(finding(probe, most, least, tolerance))
+    let largest = places.iter().rev().max_by(|a, b| a.rho.certain().total_cmp(&b.rho.certain()));
+    Ok(finding(probe, largest, least, tolerance))
 }
 
 /// Climbs on ρ over the incidence and the parameters.
@@ -182,8 +182,8 @@ impl Rules {
             let (coarse, fine) = (sum(&coarse, first, channel), sum(&fine, second, channel));
             Rho { value: fine, estimate: (fine - coarse).abs() }
         });
-        let most = rhos.max_by(|a, b| a.certain().total_cmp(&b.certain()));
-        Ok(most.unwrap_or(Rho { value: 0.0, estimate: 0.0 }))
+        let largest = rhos.max_by(|a, b| a.certain().total_cmp(&b.certain()));
+        Ok(largest.unwrap_or(Rho { value: 0.0, estimate: 0.0 }))
     }
 }
 

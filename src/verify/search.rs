@@ -80,11 +80,11 @@ fn judge(
     let mut order: Vec<_> = (0..inputs.len()).filter(|&k| deviations[k] > f64::NEG_INFINITY).collect();
     // The first of equals: inputs on the grid are the easiest to read.
     order.sort_by(|&a, &b| deviations[b].total_cmp(&deviations[a]));
-    let mut taken = 0;
+    let mut added = 0;
     for k in order {
         let worst = Worst { deviation: deviations[k], setting: setting.to_vec(), angles: inputs[k] };
-        taken += usize::from(seeds.add(worst, probe.parameters()));
-        if taken == CANDIDATES || seeds.is_full_of_worse(deviations[k]) {
+        added += usize::from(seeds.add(worst, probe.parameters()));
+        if added == CANDIDATES || seeds.is_full_of_worse(deviations[k]) {
             break;
         }
     }

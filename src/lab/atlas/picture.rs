@@ -76,20 +76,20 @@ fn in_words(page: &Page) -> String {
 type Line = (&'static str, Color, Vec<(f64, f64)>);
 
 fn by_alpha(canvas: &mut Canvas, frame: Rect, bands: &[Band]) {
-    let place = |band: &Band| band.alpha.map_or(1.0, |[low, _]| low);
-    let of = |value: fn(&Band) -> Option<f64>| -> Vec<_> {
-        bands.iter().filter_map(|band| Some((place(band), value(band)?))).collect()
+    let alpha_of = |band: &Band| band.alpha.map_or(1.0, |[low, _]| low);
+    let points = |value: fn(&Band) -> Option<f64>| -> Vec<_> {
+        bands.iter().filter_map(|band| Some((alpha_of(band), value(band)?))).collect()
     };
     // A step has two points where it is.
     let mut promised: Vec<(f64, f64)> = Vec::new();
-    for (alpha, promise) in of(|band| band.promise) {
+    for (alpha, promise) in points(|band| band.promise) {
         promised.extend(promised.last().map(|&(_, before)| (alpha, before)));
         promised.push((alpha, promise));
     }
     let lines = [
         ("promise", PROMISE, promised),
-        ("largest", MAX, of(|band| Some(band.max))),
-        ("median", MEDIAN, of(|band| Some(band.median))),
+        ("largest", MAX, points(|band| Some(band.max))),
+        ("median", MEDIAN, points(|band| Some(band.median))),
     ];
     let x = PlotScale { range: [DECADES[0], 1.0], kind: ScaleKind::Log };
     plot(canvas, frame, &x, &lines, "α");
@@ -115,8 +115,8 @@ fn by_theta(canvas: &mut Canvas, frame: Rect, map: &Map, promise: Option<f64>) {
 
 /// Lines of relative errors, with their names at their right ends, and half a unit in the last place.
 fn plot(canvas: &mut Canvas, frame: Rect, x: &PlotScale, lines: &[Line], below: &str) {
-    let most = lines.iter().flat_map(|(.., points)| points).map(|&(_, error)| error).fold(1e-5, f64::max);
-    let y = PlotScale { range: [5e-9, 2.0 * most], kind: ScaleKind::Log };
+    let largest = lines.iter().flat_map(|(.., points)| points).map(|&(_, error)| error).fold(1e-5, f64::max);
+    let y = PlotScale { range: [5e-9, 2.0 * largest], kind: ScaleKind::Log };
     let at = |(u, v): (f64, f64)| {
         let up = y.at(v).clamp(0.0, 1.0) as f32;
         (frame.x + frame.w * x.at(u) as f32, frame.y + frame.h * (1.0 - up))

@@ -128,15 +128,15 @@ fn width(lobe: &Lobe) -> f64 {
 
 /// E of some normals, by whichever way the light has; neighbours that are equal are integrated once.
 fn irradiance_of(evaluator: &Evaluator, light: &Light, normals: &[[f64; 3]]) -> Result<Vec<[f64; 3]>> {
-    let mut own: Vec<[f64; 3]> = Vec::new();
+    let mut distinct: Vec<[f64; 3]> = Vec::new();
     let mut places = Vec::with_capacity(normals.len());
     for &normal in normals {
-        if own.last() != Some(&normal) {
-            own.push(normal);
+        if distinct.last() != Some(&normal) {
+            distinct.push(normal);
         }
-        places.push(own.len() - 1);
+        places.push(distinct.len() - 1);
     }
-    let found = irradiance_of_each(evaluator, light, &own)?;
+    let found = irradiance_of_each(evaluator, light, &distinct)?;
     Ok(places.into_iter().map(|place| found[place]).collect())
 }
 

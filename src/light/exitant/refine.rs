@@ -63,13 +63,13 @@ fn directional(
     irradiance: [f64; 3],
     views: &[View],
 ) -> Result<Vec<Integrated>> {
-    let place = |view: &View| {
+    let local_angles = |view: &View| {
         let local = view.frame.to_local(direction);
         let (theta_i, phi_i) = angles(local);
         let theta_i = theta_i.min(FRAC_PI_2);
         (Angles { theta_i, phi_i, theta_e: view.theta_e, phi_e: view.phi_e }, local[2].max(0.0))
     };
-    let (angles, cosines): (Vec<_>, Vec<_>) = views.iter().map(place).unzip();
+    let (angles, cosines): (Vec<_>, Vec<_>) = views.iter().map(local_angles).unzip();
     let mut values = Vec::new();
     f(&angles, &mut values)?;
     let value = |(f, cos): (&[f32; 3], f64)| {
@@ -131,7 +131,7 @@ fn budgets(leaves: &[Leaf], views: usize, tolerance: f64) -> (Vec<Integrated>, V
             counts[kind] += 1;
         }
     }
-    let of = |&(value, [smooth, varied], [n, m]): &([f64; 3], [f64; 2], [usize; 2])| {
+    let limited = |&(value, [smooth, varied], [n, m]): &([f64; 3], [f64; 2], [usize; 2])| {
         let mean = value.iter().sum::<f64>() / 3.0;
         let allowed = 0.5 * tolerance * mean;
         let limits = if smooth + varied.sqrt() <= 2.0 * allowed {
@@ -142,7 +142,7 @@ fn budgets(leaves: &[Leaf], views: usize, tolerance: f64) -> (Vec<Integrated>, V
         };
         (Integrated { value, error: smooth + varied.sqrt() }, limits)
     };
-    totals.iter().map(of).unzip()
+    totals.iter().map(limited).unzip()
 }
 
 /// Appends the leaves of some cells.
@@ -190,15 +190,15 @@ fn leaf(view: usize, cell: DomainCell, nodes: &CellNodes, values: &[[f32; 3]]) -
     let corner = values.last().zip(nodes.cosines.last()).filter(|_| nodes.unseen > 0.0);
     let corner = corner.map_or(0.0, |(f, cos)| cos * f.iter().map(|&f| f64::from(f)).sum::<f64>() / 3.0);
     let unseen = nodes.unseen * corner;
-    let most = light * high;
+    let largest = light * high;
     let spread = if high > 0.0 { ((high - low) / high).clamp(0.0, 1.0) } else { 0.0 };
     let error = match (cell.is_flat(), nodes.side == HorizonSide::Crossed) {
         _ if nodes.hides => f64::INFINITY,
         // Down to texels, which are cut.
         (false, true) => f64::INFINITY,
-        (false, false) => VARIED * spread * spread * most,
+        (false, false) => VARIED * spread * spread * largest,
         (true, true) => CUT * (sum - coarse).abs() + UNSEEN * unseen,
-        (true, false) => SMOOTH * spread.powi(4) * most,
+        (true, false) => SMOOTH * spread.powi(4) * largest,
     };
     let varied = !cell.is_flat();
     // What no light comes from needs no parts; of a block whose nodes are all below, that is not known.
