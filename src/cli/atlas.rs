@@ -6,7 +6,7 @@ use crate::base::error::{Error, Result};
 use crate::cli::watch::Watch;
 use crate::cli::{HEADING, device_json, print_beside, print_json};
 use crate::lab::atlas;
-use crate::lab::atlas::{Band, DEFAULT_BUDGET, Kind, Page};
+use crate::lab::atlas::{Band, DEFAULT_BUDGET, Page, PageKind};
 use crate::model;
 use crate::model::{MODELS, Model};
 use std::path::PathBuf;
@@ -69,7 +69,7 @@ pub fn run(args: &Args) -> Result<()> {
     for line in pages.iter().flat_map(lines) {
         say(&line)?;
     }
-    let kind = if args.study { Kind::Study } else { Kind::Atlas };
+    let kind = if args.study { PageKind::Study } else { PageKind::Atlas };
     if let Some(dir) = &args.out {
         atlas::write(dir, kind, &pages, &device)?;
         say(&format!("{0}.csv, {0}.json and pictures in {1}", kind.name(), dir.display()))?;

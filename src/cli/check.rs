@@ -16,7 +16,7 @@ use crate::verify::{Finding, Input, Options, Parameter, Report, STEPS, Symmetry,
 use anstyle::{AnsiColor, Style};
 use serde_json::json;
 use std::path::{Path, PathBuf};
-use targets::Target;
+use targets::CheckTarget;
 pub(super) use targets::quoted;
 
 #[derive(clap::Args)]
@@ -117,11 +117,11 @@ pub fn run(args: &Args) -> Result<()> {
 }
 
 /// Checks models, bases and materials, one subject after the other.
-fn check_targets(args: &Args, targets: Vec<Target>, evaluator: &Evaluator, line: &str) -> Result<()> {
+fn check_targets(args: &Args, targets: Vec<CheckTarget>, evaluator: &Evaluator, line: &str) -> Result<()> {
     print_beside(args.json, &format!("{HEADING}device{HEADING:#}  {line}"))?;
     let watch = Watch::new(STEPS * targets.len());
     let mut all = Vec::new();
-    for (k, Target { mut subject, command }) in targets.into_iter().enumerate() {
+    for (k, CheckTarget { mut subject, command }) in targets.into_iter().enumerate() {
         let start = Stopwatch::start();
         let report = verify::check(&mut subject, &args.options(), &watch)?;
         let seconds = start.seconds();

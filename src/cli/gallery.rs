@@ -3,7 +3,7 @@
 use crate::backend::gpu::DeviceChoice;
 use crate::bake::{Evaluator, Observer};
 use crate::base::error::Result;
-use crate::cli::plot::View;
+use crate::cli::plot::PlotView;
 use crate::cli::watch::Watch;
 use crate::cli::{HEADING, device_json, models as details, print_beside, print_json};
 use crate::figure::picture::{MOST_SETTINGS, Radius};
@@ -51,7 +51,7 @@ struct Entry {
     summary: String,
     /// A heading, and lines below it.
     facts: Vec<(&'static str, Vec<String>)>,
-    view: View,
+    view: PlotView,
 }
 
 pub fn run(args: &Args) -> Result<()> {
@@ -84,7 +84,7 @@ pub fn run(args: &Args) -> Result<()> {
 fn entries() -> Result<Vec<Entry>> {
     let mut entries = Vec::new();
     for model in MODELS {
-        let view = View::of_model(model.name, &[])?;
+        let view = PlotView::of_model(model.name, &[])?;
         entries.push(Entry {
             stem: view.stem(),
             title: model.name.into(),
@@ -109,7 +109,7 @@ fn entries() -> Result<Vec<Entry>> {
                 title: format!("{} by {kind}", model.name),
                 summary: format!("What {kind} = {} does to {}", names.join(" | "), model.name),
                 facts: vec![("Terms", terms.iter().map(said).collect())],
-                view: View::of_model(model.name, &sets)?,
+                view: PlotView::of_model(model.name, &sets)?,
             });
         }
     }
@@ -124,7 +124,7 @@ fn entries() -> Result<Vec<Entry>> {
             ("Parameters", parameters(film)),
             ("Promises", details::promises(film)),
         ],
-        view: View::of_model(film.name, &sets.map(String::from))?,
+        view: PlotView::of_model(film.name, &sets.map(String::from))?,
     });
     entries.push(compensation(model)?);
     Ok(entries)
@@ -151,7 +151,7 @@ fn compensation(model: &Model) -> Result<Entry> {
         title: format!("{} by compensation", model.name),
         summary: format!("What compensation = {} does to {}", names.join(" | "), model.name),
         facts: vec![("Compensation", Compensation::ALL.map(said).to_vec())],
-        view: View::of_model(model.name, &sets)?,
+        view: PlotView::of_model(model.name, &sets)?,
     })
 }
 

@@ -9,7 +9,7 @@ use crate::cli::subject::key_value;
 use crate::cli::watch::Watch;
 use crate::cli::{HEADING, device_json, models as details, print_beside, print_json};
 use crate::figure::picture::{MOST_SETTINGS, MOST_THETAS, Picture, Plate, Radius, draw};
-use crate::figure::{Portrait, Sitter};
+use crate::figure::{Figure, FigureSubject};
 use crate::io::write_files;
 use crate::model;
 use crate::scene;
@@ -93,8 +93,8 @@ pub fn run(args: &Args) -> Result<()> {
         )));
     }
     let view = match &args.material {
-        None => View::of_model(&args.subject, &args.set)?,
-        Some(name) => View::of_material(Path::new(&args.subject), name, &args.set)?,
+        None => PlotView::of_model(&args.subject, &args.set)?,
+        Some(name) => PlotView::of_material(Path::new(&args.subject), name, &args.set)?,
     };
     let out = if args.out.is_empty() {
         vec![PathBuf::from(format!("{}.png", view.stem()))]
@@ -106,7 +106,7 @@ pub fn run(args: &Args) -> Result<()> {
     let (evaluator, line) = Evaluator::choose(&args.device)?;
     let say = |text: &str| print_beside(args.json, text);
     say(&format!("{HEADING}device{HEADING:#}  {line}"))?;
-    let watch = Watch::new(view.sitters.len() + 1);
+    let watch = Watch::new(view.subjects.len() + 1);
     let shown = view.show(&args.theta, args.radius, &evaluator, &watch);
     watch.finish();
     let shown = shown?;
@@ -128,7 +128,7 @@ pub fn run(args: &Args) -> Result<()> {
     print_json(&json)
 }
 
-/// By a file's extension.
+/// The format of a picture, chosen by the file's extension.
 #[derive(Clone, Copy)]
 enum PictureFormat {
     Png,
@@ -152,22 +152,22 @@ impl PictureFormat {
     }
 }
 
-/// What a picture is of: one BRDF at several settings.
-pub struct View {
+/// One BRDF at several settings: the subject of a plot.
+pub struct PlotView {
     title: String,
     subtitle: String,
     /// The name of the model or material.
     name: String,
-    sitters: Vec<Sitter>,
+    subjects: Vec<FigureSubject>,
     /// The command that makes the picture, but for `--theta` and `--out`.
     pub command: String,
 }
 
-/// A parameter and the values that it is to take, in the words of the command line.
+/// A parameter and its values, as the command line gives them.
 type Given<'a> = (&'a str, Vec<&'a str>);
 
-impl View {
-    /// A model with `--set`; without any, at three settings.
+impl PlotView {
+    /// Plots a model with `--set`, or without it at three default settings.
     pub fn of_model(name: &str, sets: &[String]) -> Result<Self> {
         let model = model::find(name).map_err(|error| match error {
             Error::Input(why) if name.contains(['.', '/']) => {
@@ -175,15 +175,15 @@ impl View {
             }
             other => other,
         })?;
-        let own = details::settings(model);
-        let sets = if sets.is_empty() { &own[..] } else { sets };
+        let default_sets = details::settings(model);
+        let sets = if sets.is_empty() { &default_sets[..] } else { sets };
         let given = given(sets)?;
-        let sitter = |label: String, setting: &[(&str, &str)]| {
+        let subject = |label: String, setting: &[(&str, &str)]| {
             let scene = subject::model(name, setting.iter().copied())?;
-            Ok(Sitter { label, material: scene.materials[0].name.clone(), scene })
+            Ok(FigureSubject { label, material: scene.materials[0].name.clone(), scene })
         };
-        let sitters = sitters(&given, name, sitter)?;
-        // What is not varied, with the defaults of what is not given.
+        let subjects = subjects(&given, name, subject)?;
+        // The parameters that are not varied, with their defaults if they are not given.
         let fixed = details::parameters(model).into_iter().filter_map(|parameter| {
             match given.iter().find(|(key, _)| *key == parameter.name) {
                 Some((key, values)) => (values.len() == 1).then(|| format!("{key} = {}", values[0])),
@@ -192,8 +192,8 @@ impl View {
         });
         let is_default = !given.iter().any(|(key, _)| ["masking", "fresnel"].contains(key));
         let (summary, source) = match model.microfacet {
-            // The model's own words are of its own terms.
-            Some(made) if !is_default => (made.ndf.summary, made.ndf.source),
+            // The model's summary describes its default terms.
+            Some(microfacet) if !is_default => (microfacet.ndf.summary, microfacet.ndf.source),
             _ => (model.summary, model.source),
         };
         let command = sets.iter().map(|set| format!(" --set {}", quoted(set))).collect::<String>();
@@ -201,20 +201,20 @@ impl View {
             title: format!("{}: {summary}", model.name),
             subtitle: fixed.chain([source.to_owned()]).collect::<Vec<_>>().join("   ·   "),
             name: model.name.into(),
-            sitters,
+            subjects,
             command: format!("gonio plot {}{command}", model.name),
         })
     }
 
-    /// A material of a scene or recipe.
+    /// Plots a material of a scene or recipe.
     fn of_material(path: &Path, name: &str, sets: &[String]) -> Result<Self> {
         let scene = scene::read(path)?;
         let given = given(sets)?;
-        let sitter = |label: String, setting: &[(&str, &str)]| {
+        let subject = |label: String, setting: &[(&str, &str)]| {
             let scene = subject::material(scene.clone(), name, setting.iter().copied())?;
-            Ok(Sitter { label, material: name.to_owned(), scene })
+            Ok(FigureSubject { label, material: name.to_owned(), scene })
         };
-        let sitters = sitters(&given, name, sitter)?;
+        let subjects = subjects(&given, name, subject)?;
         let lobes = scene.materials.iter().find(|m| m.name == name).into_iter().flat_map(|m| &m.lobes);
         let fixed = given.iter().filter(|(_, values)| values.len() == 1);
         let fixed = fixed.map(|(key, values)| format!("{key} = {}", values[0]));
@@ -224,43 +224,44 @@ impl View {
             title: format!("{name} of {file}"),
             subtitle: std::iter::once(lobes).chain(fixed).collect::<Vec<_>>().join("   ·   "),
             name: name.to_owned(),
-            sitters,
+            subjects,
             command: String::new(),
         })
     }
 
-    /// The name of a file.
+    /// Returns the name as the stem of a file name.
     pub fn stem(&self) -> String {
         let plain = |c: char| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '_' };
         self.name.chars().map(plain).collect()
     }
 
-    /// How many steps a watch is to expect.
+    /// Returns the number of steps for a progress bar.
     pub fn steps(&self) -> usize {
-        self.sitters.len() + 1
+        self.subjects.len() + 1
     }
 
-    /// Evaluates and draws.
+    /// Evaluates and draws the subjects.
     pub fn show<'a>(
         &'a self,
         thetas: &'a [f64],
         radius: Radius,
         evaluator: &Evaluator,
         observer: &dyn Observer,
-    ) -> Result<Shown<'a>> {
-        let portraits = self.sitters.iter().map(|sitter| Portrait::take(sitter, thetas, evaluator, observer));
-        let portraits = portraits.collect::<Result<Vec<_>>>()?;
+    ) -> Result<RenderedView<'a>> {
+        let figures =
+            self.subjects.iter().map(|subject| Figure::evaluate(subject, thetas, evaluator, observer));
+        let figures = figures.collect::<Result<Vec<_>>>()?;
         observer.begin("drawing");
         observer.advance(0.0)?;
-        let footer = footer(&portraits, evaluator);
+        let footer = footer(&figures, evaluator);
         let (title, subtitle) = (&self.title, &self.subtitle);
-        let plate = Plate { title, subtitle, footer: &footer, thetas, portraits: &portraits, radius };
+        let plate = Plate { title, subtitle, footer: &footer, thetas, figures: &figures, radius };
         let picture = draw(&plate)?;
-        Ok(Shown { view: self, thetas, portraits, picture })
+        Ok(RenderedView { view: self, thetas, figures, picture })
     }
 }
 
-/// Every `--set`, its value split where commas are that stand in no list of their own: `f0=[1,0.8,0.3],0.04`.
+/// Splits the value of each `--set` at the commas outside brackets: `f0=[1,0.8,0.3],0.04`.
 fn given(sets: &[String]) -> Result<Vec<Given<'_>>> {
     let split = |set| {
         let (key, values) = key_value(set)?;
@@ -278,26 +279,26 @@ fn given(sets: &[String]) -> Result<Vec<Given<'_>>> {
     sets.iter().map(|set| split(set.as_str())).collect()
 }
 
-/// One for each value of the parameter that has several.
-fn sitters(
+/// Builds one subject for each value of the parameter that has several.
+fn subjects(
     given: &[Given],
     name: &str,
-    sitter: impl Fn(String, &[(&str, &str)]) -> Result<Sitter>,
-) -> Result<Vec<Sitter>> {
+    subject: impl Fn(String, &[(&str, &str)]) -> Result<FigureSubject>,
+) -> Result<Vec<FigureSubject>> {
     let lists: Vec<_> = given.iter().filter(|(_, values)| values.len() > 1).collect();
     let setting = |choose: &dyn Fn(&Given<'_>) -> usize| -> Vec<_> {
         given.iter().map(|one| (one.0.to_owned(), one.1[choose(one)].to_owned())).collect()
     };
-    let made = |label: String, setting: Vec<(String, String)>| {
+    let with_setting = |label: String, setting: Vec<(String, String)>| {
         let setting: Vec<_> = setting.iter().map(|(key, value)| (key.as_str(), value.as_str())).collect();
-        sitter(label, &setting)
+        subject(label, &setting)
     };
     match lists[..] {
-        [] => Ok(vec![made(name.to_owned(), setting(&|_| 0))?]),
+        [] => Ok(vec![with_setting(name.to_owned(), setting(&|_| 0))?]),
         [(key, values)] if values.len() <= MOST_SETTINGS => {
             let one = |k: usize| {
                 let chosen = |one: &Given<'_>| if one.0 == *key { k } else { 0 };
-                made(format!("{key} = {}", values[k]), setting(&chosen))
+                with_setting(format!("{key} = {}", values[k]), setting(&chosen))
             };
             (0..values.len()).map(one).collect()
         }
@@ -315,15 +316,15 @@ fn sitters(
     }
 }
 
-/// What computed it, and how well.
-fn footer(portraits: &[Portrait], evaluator: &Evaluator) -> String {
+/// Formats the device, the arithmetic and the measured error of ρ_dh.
+fn footer(figures: &[Figure], evaluator: &Evaluator) -> String {
     let (device, arithmetic) = match evaluator {
         Evaluator::Device(device) => (device.name().to_owned(), "f32"),
         Evaluator::Cpu => ("the CPU".to_owned(), "f64"),
     };
     let mut words =
         vec![format!("gonio {} on {device}", env!("CARGO_PKG_VERSION")), format!("values in {arithmetic}")];
-    let rhos: Vec<_> = portraits.iter().filter_map(|portrait| portrait.rho.as_ref().ok()).collect();
+    let rhos: Vec<_> = figures.iter().filter_map(|figure| figure.rho.as_ref().ok()).collect();
     if let Some(rho) = rhos.first() {
         let measured = rhos.iter().filter_map(|rho| rho.measured).fold(0.0, f64::max);
         let Some(tolerance) = rhos.iter().map(|rho| rho.tolerance).reduce(f64::max) else {
@@ -337,57 +338,53 @@ fn footer(portraits: &[Portrait], evaluator: &Evaluator) -> String {
     words.join("   ·   ")
 }
 
-/// A picture, and what it shows.
-pub struct Shown<'a> {
-    view: &'a View,
+/// A drawn plot and the figures in it.
+pub struct RenderedView<'a> {
+    view: &'a PlotView,
     thetas: &'a [f64],
-    portraits: Vec<Portrait>,
+    figures: Vec<Figure>,
     pub picture: Picture,
 }
 
-impl Shown<'_> {
+impl RenderedView<'_> {
     fn lines(&self) -> Vec<String> {
         let mut lines = vec![format!("{HEADING}{}{HEADING:#}", self.view.title)];
-        for portrait in &self.portraits {
+        for figure in &self.figures {
             for (k, theta) in self.thetas.iter().enumerate() {
-                let peak = peak(portrait, k).map_or("a delta, no values".into(), |(theta_e, f)| {
+                let peak = peak(figure, k).map_or("a delta, no values".into(), |(theta_e, f)| {
                     format!("f cos θe up to {f:.4e} sr⁻¹, at θe = {:.2}°", theta_e.to_degrees())
                 });
-                let rho = match &portrait.rho {
+                let rho = match &figure.rho {
                     Ok(rho) => format!("ρ_dh = {}", by_channel(rho.at(*theta))),
                     Err(_) => "ρ_dh has no bound".into(),
                 };
-                lines.push(format!(
-                    "  {:24}  θi = {:.4}°  {peak}; {rho}",
-                    portrait.label,
-                    theta.to_degrees()
-                ));
+                lines.push(format!("  {:24}  θi = {:.4}°  {peak}; {rho}", figure.label, theta.to_degrees()));
             }
         }
         lines
     }
 
     pub fn to_json(&self) -> Value {
-        let setting = |portrait: &Portrait| {
+        let setting = |figure: &Figure| {
             let directions = self.thetas.iter().enumerate().map(|(k, &theta_i)| {
-                let peak = peak(portrait, k).map(|(theta_e, f)| json!({ "theta_e": theta_e, "f_cos_theta_e": f }));
-                json!({ "theta_i": theta_i, "rho_dh": portrait.rho.as_ref().ok().map(|rho| rho.at(theta_i)), "peak": peak })
+                let peak = peak(figure, k).map(|(theta_e, f)| json!({ "theta_e": theta_e, "f_cos_theta_e": f }));
+                json!({ "theta_i": theta_i, "rho_dh": figure.rho.as_ref().ok().map(|rho| rho.at(theta_i)), "peak": peak })
             });
             json!({
-                "label": portrait.label, "has_values": portrait.values.is_some(), "has_delta": portrait.has_delta,
-                "rho_dh_unbounded": portrait.rho.as_ref().err(), "directions": directions.collect::<Vec<_>>(),
+                "label": figure.label, "has_values": figure.values.is_some(), "has_delta": figure.has_delta,
+                "rho_dh_unbounded": figure.rho.as_ref().err(), "directions": directions.collect::<Vec<_>>(),
             })
         };
         json!({
             "subject": self.view.name, "title": self.view.title,
-            "settings": self.portraits.iter().map(setting).collect::<Vec<_>>(),
+            "settings": self.figures.iter().map(setting).collect::<Vec<_>>(),
         })
     }
 }
 
-/// The largest f cos θe in the plane of incidence, of any channel, and where: θe < 0 on the side of ωi.
-fn peak(portrait: &Portrait, k: usize) -> Option<(f64, f64)> {
-    let plane = &portrait.values.as_ref()?.lobes[k].plane;
+/// Finds the largest f cos θe of any channel in the plane of incidence, and its θe, which is below 0 on the side of ωi.
+fn peak(figure: &Figure, k: usize) -> Option<(f64, f64)> {
+    let plane = &figure.values.as_ref()?.lobes[k].plane;
     let largest = plane.iter().map(|&(theta, f)| (theta, f.into_iter().fold(0.0, f64::max)));
     largest.filter(|(_, f)| f.is_finite()).max_by(|a, b| a.1.total_cmp(&b.1))
 }

@@ -11,12 +11,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub struct Watch {
     bar: ProgressBar,
     start: Stopwatch,
-    step: Mutex<Step>,
+    step: Mutex<Progress>,
     stop: Arc<AtomicBool>,
 }
 
 /// Counts the steps begun, and the share done of the last.
-struct Step {
+struct Progress {
     count: u64,
     share: f64,
 }
@@ -37,7 +37,7 @@ impl Watch {
         if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}  {elapsed}") {
             bar.set_style(style);
         }
-        Self { bar, start: Stopwatch::start(), step: Mutex::new(Step { count: 0, share: 0.0 }), stop }
+        Self { bar, start: Stopwatch::start(), step: Mutex::new(Progress { count: 0, share: 0.0 }), stop }
     }
 
     /// Prints while the bar is hidden.
@@ -55,7 +55,7 @@ impl Observer for Watch {
     fn begin(&self, what: &str) {
         self.bar.set_message(what.to_string());
         let mut step = self.step.lock().unwrap_or_else(PoisonError::into_inner);
-        *step = Step { count: step.count + 1, share: 0.0 };
+        *step = Progress { count: step.count + 1, share: 0.0 };
         self.bar.set_position((step.count - 1) * TICKS);
     }
 

@@ -1,7 +1,7 @@
 //! The picture of a light: the light, its irradiance, and lit spheres, all at one exposure.
 
 use crate::base::error::Result;
-use crate::io::draw::canvas::{Align, BLACK, Canvas, Color, Frame, GREY, Pixels, WHITE};
+use crate::io::draw::canvas::{Align, BLACK, Canvas, Color, GREY, Pixels, Rect, WHITE};
 use crate::io::draw::panel::LABEL_SIZE;
 
 /// A picture's content; colours are linear, 1 is white before it is bent.
@@ -38,7 +38,7 @@ pub(crate) fn draw(sheet: &Sheet) -> Result<Vec<u8>> {
     canvas.text(&subtitle, (LEFT, 54.0), LABEL_SIZE, Align::Left, GREY);
     let maps = [(&sheet.radiance, "radiance L"), (&sheet.irradiance, "irradiance E/π over normals")];
     for (k, ((columns, values), label)) in maps.into_iter().enumerate() {
-        let frame = Frame { x: LEFT + k as f32 * (MAP[0] + LEFT), y: TOP, w: MAP[0], h: MAP[1] };
+        let frame = Rect { x: LEFT + k as f32 * (MAP[0] + LEFT), y: TOP, w: MAP[0], h: MAP[1] };
         let pixels = Pixels { width: *columns, colors: values.iter().map(color).collect() };
         canvas.image(frame, pixels, label);
         canvas.border(frame, GREY);
@@ -47,7 +47,7 @@ pub(crate) fn draw(sheet: &Sheet) -> Result<Vec<u8>> {
     }
     for (k, ball) in sheet.balls.iter().enumerate() {
         let side = BALL as f32;
-        let frame = Frame { x: LEFT + k as f32 * (side + 22.0), y: below + 4.0, w: side, h: side };
+        let frame = Rect { x: LEFT + k as f32 * (side + 22.0), y: below + 4.0, w: side, h: side };
         canvas.image(frame, enlarged(ball), &ball.label);
         let label = canvas.fit(&ball.label, LABEL_SIZE, side + 16.0);
         canvas.text(&label, (frame.x + 0.5 * side, frame.y + side + 18.0), LABEL_SIZE, Align::Center, BLACK);

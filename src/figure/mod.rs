@@ -1,4 +1,4 @@
-//! What a picture of a BRDF shows: lobes in the plane of incidence and over the hemisphere, a sphere under a
+//! Evaluates what a picture of a BRDF shows: lobes in the plane of incidence and over the hemisphere, a sphere under a
 //! point light and under a uniform one, and ρ_dh, each at several settings.
 
 pub(crate) mod light;
@@ -29,29 +29,29 @@ const THETAS: usize = 1025;
 /// Texels of ρ_dh that are compared with the reference.
 const CHECKED: usize = 16;
 
-/// Towards the point light, far away, from the sphere's middle: x right, y up, z to the eye.
+/// The unit vector from the sphere towards the distant point light: x right, y up, z to the eye.
 const LIGHT: [f64; 3] = [-0.5, 0.5, std::f64::consts::FRAC_1_SQRT_2];
 
-/// What to look at: a material of a scene, the same everywhere, and what it is called in the picture.
-pub(crate) struct Sitter {
+/// The subject of a picture: a constant material of a scene, and its label.
+pub(crate) struct FigureSubject {
     pub label: String,
     pub scene: Scene,
     pub material: String,
 }
 
 /// A BRDF at one setting. Colours are R, G, B.
-pub(crate) struct Portrait {
+pub(crate) struct Figure {
     pub label: String,
     /// The lobes that are no delta; `None` if all are.
-    pub values: Option<Values>,
+    pub values: Option<FigureValues>,
     /// Whether there is a delta, which the values lack.
     pub has_delta: bool,
     /// ρ_dh, or why it has no bound.
     pub rho: Result<Reflectance, &'static str>,
 }
 
-/// What f is.
-pub(crate) struct Values {
+/// Values of f for the panels of a picture.
+pub(crate) struct FigureValues {
     /// For each θi.
     pub lobes: Vec<Lobes>,
     /// π f cos θi over a sphere that the point light shines on, row by row from the top: the radiance for an
@@ -74,25 +74,25 @@ pub(crate) struct Reflectance {
     values: Vec<[f64; 3]>,
     /// The largest difference from the reference, where it was compared.
     pub measured: Option<f64>,
-    /// What it was to be at most.
+    /// The largest difference allowed.
     pub tolerance: f64,
     /// The arithmetic.
     pub precision: String,
 }
 
-impl Portrait {
-    /// The portrait of a sitter, light coming in at each of `thetas`.
+impl Figure {
+    /// Evaluates a subject for light from each of `thetas`.
     ///
     /// # Errors
     /// When the material varies, the device fails, or ρ_dh misses its tolerance.
-    pub fn take(
-        sitter: &Sitter,
+    pub fn evaluate(
+        subject: &FigureSubject,
         thetas: &[f64],
         evaluator: &Evaluator,
         observer: &dyn Observer,
     ) -> Result<Self> {
-        observer.begin(&sitter.label);
-        let Sitter { label, scene, material } = sitter;
+        observer.begin(&subject.label);
+        let FigureSubject { label, scene, material } = subject;
         let lobes = constant_lobes(scene.material(material)?)
             .map_err(|why| Error::input(format!("{material}: {why}")))?;
         let unbounded = lobes.iter().find_map(|lobe| match lobe.model().integral {
@@ -101,13 +101,13 @@ impl Portrait {
         });
         let rho = match unbounded {
             Some(why) => Err(why),
-            None => Ok(Reflectance::of(sitter, evaluator)?),
+            None => Ok(Reflectance::of(subject, evaluator)?),
         };
         observer.advance(0.2)?;
         let (deltas, finite): (Vec<_>, Vec<_>) = lobes.into_iter().partition(is_delta);
         let values = match finite[..] {
             [] => None,
-            _ => Some(Values::of(&finite, thetas, evaluator, observer)?),
+            _ => Some(FigureValues::of(&finite, thetas, evaluator, observer)?),
         };
         Ok(Self { label: label.clone(), values, has_delta: !deltas.is_empty(), rho })
     }
@@ -118,9 +118,9 @@ fn is_delta(lobe: &Lobe) -> bool {
 }
 
 impl Reflectance {
-    fn of(Sitter { label, scene, material }: &Sitter, evaluator: &Evaluator) -> Result<Self> {
+    fn of(FigureSubject { label, scene, material }: &FigureSubject, evaluator: &Evaluator) -> Result<Self> {
         let axis = Axis::new(Variable::ThetaI, THETAS, [0.0, FRAC_PI_2], Positions::Nodes, Mapping::Linear)?;
-        // In the plane of the tangent, where azimuths tell.
+        // Anisotropic models: in the plane of the tangent.
         let anisotropic = scene.material(material)?.is_anisotropic();
         let about = anisotropic.then(|| Axis::listed(Variable::PhiI, vec![0.0])).transpose()?;
         let axes = [axis].into_iter().chain(about).collect();
@@ -157,7 +157,7 @@ impl Reflectance {
     }
 }
 
-impl Values {
+impl FigureValues {
     fn of(lobes: &[Lobe], thetas: &[f64], evaluator: &Evaluator, observer: &dyn Observer) -> Result<Self> {
         let mut f = Brdf { points: Points::new(evaluator, lobes)?, observer };
         let share = 0.8 / (thetas.len() + 4) as f64;

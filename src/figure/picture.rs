@@ -1,15 +1,15 @@
 //! The picture of a BRDF at several settings.
 
 use crate::base::error::Result;
-use crate::figure::{Portrait, Reflectance, SIDE, pixel};
-use crate::io::draw::canvas::{Align, BLACK, Canvas, Color, Frame, GREY, PALE, Pixels, WHITE};
+use crate::figure::{Figure, Reflectance, SIDE, pixel};
+use crate::io::draw::canvas::{Align, BLACK, Canvas, Color, GREY, PALE, Pixels, Rect, WHITE};
 use crate::io::draw::colormap::viridis;
 use crate::io::draw::labels;
 use crate::io::draw::labels::Named;
 use crate::io::draw::panel::{LABEL_SIZE, LEFT, TICK_SIZE, axis_labels, color_bar, ticks_below, ticks_left};
 use crate::io::draw::polar;
 use crate::io::draw::polar::{Dial, thinned};
-use crate::io::draw::scale::{Kind, Scale, short};
+use crate::io::draw::scale::{PlotScale, ScaleKind, short};
 use std::f32::consts::PI;
 use std::f64::consts::FRAC_PI_2;
 
@@ -50,7 +50,7 @@ pub(crate) struct Plate<'a> {
     pub footer: &'a str,
     /// θi, rad.
     pub thetas: &'a [f64],
-    pub portraits: &'a [Portrait],
+    pub figures: &'a [Figure],
     pub radius: Radius,
 }
 
@@ -78,8 +78,7 @@ pub(crate) fn draw(plate: &Plate) -> Result<Picture> {
     let base = TOP + 64.0 + radius;
     let rows = base + 62.0;
     let notes = notes(plate);
-    let height =
-        rows + HEADING + ROW * plate.portraits.len() as f32 + 34.0 + 20.0 * notes.len() as f32 + 30.0;
+    let height = rows + HEADING + ROW * plate.figures.len() as f32 + 34.0 + 20.0 * notes.len() as f32 + 30.0;
 
     let mut canvas = Canvas::new(width as usize, height as usize)?;
     let title = canvas.fit(plate.title, 24.0, width - 50.0);
@@ -89,8 +88,8 @@ pub(crate) fn draw(plate: &Plate) -> Result<Picture> {
 
     lobes(&mut canvas, plate, panel, base, radius);
     let x = 10.0 + panel * plate.thetas.len() as f32;
-    let right = if plate.portraits.len() > 1 { 24.0 } else { 30.0 };
-    let frame = Frame { x: x + LEFT, y: TOP + 36.0, w: panel - LEFT - right, h: base - TOP - 36.0 };
+    let right = if plate.figures.len() > 1 { 24.0 } else { 30.0 };
+    let frame = Rect { x: x + LEFT, y: TOP + 36.0, w: panel - LEFT - right, h: base - TOP - 36.0 };
     furnace(&mut canvas, frame, plate);
     discs(&mut canvas, rows, width, plate);
 
@@ -107,7 +106,7 @@ pub(crate) fn draw(plate: &Plate) -> Result<Picture> {
 /// What the picture cannot show, in words, and of which settings.
 fn notes(plate: &Plate) -> Vec<String> {
     let mut notes: Vec<(String, Vec<&str>)> = Vec::new();
-    for Portrait { label, values, has_delta, rho } in plate.portraits {
+    for Figure { label, values, has_delta, rho } in plate.figures {
         let mut note = |said: String| match notes.iter_mut().find(|(other, _)| *other == said) {
             Some((_, labels)) => labels.push(label),
             None => notes.push((said, vec![label])),
@@ -125,17 +124,17 @@ fn notes(plate: &Plate) -> Vec<String> {
     }
     let mut notes: Vec<_> =
         notes.into_iter().map(|(said, labels)| format!("{}: {said}", labels.join(", "))).collect();
-    if plate.portraits.len() > 1 && !plate.portraits.iter().all(is_grey) {
+    if plate.figures.len() > 1 && !plate.figures.iter().all(is_grey) {
         notes.push("Lines and maps are of the luminance of R, G and B (Rec. 709)".into());
     }
     notes
 }
 
 /// A line of the plots: its name, its colour, and what it is of R, G and B.
-struct Curve<'a> {
+struct FigureCurve<'a> {
     name: &'a str,
     color: Color,
-    portrait: &'a Portrait,
+    figure: &'a Figure,
     of: fn([f64; 3]) -> f64,
 }
 
@@ -144,26 +143,25 @@ fn luminance([r, g, b]: [f64; 3]) -> f64 {
     if r == g && g == b { r } else { 0.2126 * r + 0.7152 * g + 0.0722 * b }
 }
 
-fn is_grey(portrait: &Portrait) -> bool {
+fn is_grey(figure: &Figure) -> bool {
     let grey = |[r, g, b]: [f64; 3]| r == g && g == b;
-    let lobes = portrait.values.iter().flat_map(|values| &values.lobes);
+    let lobes = figure.values.iter().flat_map(|values| &values.lobes);
     lobes.flat_map(|lobes| &lobes.plane).all(|&(_, f)| grey(f))
-        && portrait.rho.iter().flat_map(Reflectance::samples).all(|(_, rho)| grey(rho))
+        && figure.rho.iter().flat_map(Reflectance::samples).all(|(_, rho)| grey(rho))
 }
 
 /// A curve a setting; of a single coloured one, each channel.
-fn curves<'a>(plate: &Plate<'a>) -> Vec<Curve<'a>> {
+fn curves<'a>(plate: &Plate<'a>) -> Vec<FigureCurve<'a>> {
     let of: [fn([f64; 3]) -> f64; 3] = [|c| c[0], |c| c[1], |c| c[2]];
-    match plate.portraits {
-        [portrait] if !is_grey(portrait) => {
+    match plate.figures {
+        [figure] if !is_grey(figure) => {
             let channels = ["R", "G", "B"].into_iter().zip(RGB).zip(of);
-            channels.map(|((name, color), of)| Curve { name, color, portrait, of }).collect()
+            channels.map(|((name, color), of)| FigureCurve { name, color, figure, of }).collect()
         }
         all => {
-            let curve = |(portrait, color): (&'a Portrait, Color)| {
-                let name =
-                    portrait.label.split_once(" = ").map_or(portrait.label.as_str(), |(_, value)| value);
-                Curve { name, color, portrait, of: luminance }
+            let curve = |(figure, color): (&'a Figure, Color)| {
+                let name = figure.label.split_once(" = ").map_or(figure.label.as_str(), |(_, value)| value);
+                FigureCurve { name, color, figure, of: luminance }
             };
             all.iter().zip(CURVES).map(curve).collect()
         }
@@ -173,8 +171,8 @@ fn curves<'a>(plate: &Plate<'a>) -> Vec<Curve<'a>> {
 /// A polar plot for each θi, all with the same radius.
 fn lobes(canvas: &mut Canvas, plate: &Plate, panel: f32, base: f32, radius: f32) {
     let curves = curves(plate);
-    let plane = |curve: &Curve, k: usize| -> Vec<(f64, f64)> {
-        let lobes = curve.portrait.values.as_ref().map(|values| &values.lobes[k].plane);
+    let plane = |curve: &FigureCurve, k: usize| -> Vec<(f64, f64)> {
+        let lobes = curve.figure.values.as_ref().map(|values| &values.lobes[k].plane);
         lobes.into_iter().flatten().map(|&(theta, f)| (theta, (curve.of)(f))).collect()
     };
     let largest = |lobe: Vec<(f64, f64)>| {
@@ -193,16 +191,16 @@ fn lobes(canvas: &mut Canvas, plate: &Plate, panel: f32, base: f32, radius: f32)
         canvas.text(&heading, (dial.x, TOP + 12.0), LABEL_SIZE, Align::Center, BLACK);
         let label = if peaks.is_empty() { String::new() } else { polar::axis_label(&scale) };
         dial.draw(canvas, &scale, theta_i, &label);
-        let shown = curves.iter().filter(|curve| curve.portrait.values.is_some());
+        let shown = curves.iter().filter(|curve| curve.figure.values.is_some());
         dial.lobes(
             canvas,
             &scale,
             theta_i,
             &shown.map(|c| (c.name, c.color, plane(c, k))).collect::<Vec<_>>(),
         );
-        let deltas = curves.iter().filter(|curve| curve.portrait.values.is_none());
+        let deltas = curves.iter().filter(|curve| curve.figure.values.is_none());
         let said = deltas.map(|curve| {
-            let rho = curve.portrait.rho.as_ref().map_or(f64::INFINITY, |rho| (curve.of)(rho.at(theta_i)));
+            let rho = curve.figure.rho.as_ref().map_or(f64::INFINITY, |rho| (curve.of)(rho.at(theta_i)));
             (format!("{}: a delta, ρ_dh({}°) = {rho:.4}", curve.name, degrees(theta_i)), curve.color)
         });
         dial.say(canvas, &said.collect::<Vec<_>>());
@@ -210,19 +208,19 @@ fn lobes(canvas: &mut Canvas, plate: &Plate, panel: f32, base: f32, radius: f32)
 }
 
 /// ρ_dh over θ, and the white furnace.
-fn furnace(canvas: &mut Canvas, frame: Frame, plate: &Plate) {
+fn furnace(canvas: &mut Canvas, frame: Rect, plate: &Plate) {
     let heading = "directional-hemispherical reflectance";
     canvas.text(heading, (frame.x + frame.w / 2.0, TOP + 12.0), LABEL_SIZE, Align::Center, BLACK);
     let curves = curves(plate);
-    let line = |curve: &Curve| -> Vec<(f64, f64)> {
-        let rho = curve.portrait.rho.iter().flat_map(Reflectance::samples);
+    let line = |curve: &FigureCurve| -> Vec<(f64, f64)> {
+        let rho = curve.figure.rho.iter().flat_map(Reflectance::samples);
         rho.map(|(theta, rho)| (theta, (curve.of)(rho))).collect()
     };
     let lines: Vec<_> = curves.iter().map(line).collect();
     let max = lines.iter().flatten().map(|&(_, rho)| rho).fold(1.0, f64::max);
     let (x, y) = (
-        Scale { range: [0.0, FRAC_PI_2], kind: Kind::Degrees },
-        Scale { range: [0.0, 1.12 * max], kind: Kind::Linear },
+        PlotScale { range: [0.0, FRAC_PI_2], kind: ScaleKind::Degrees },
+        PlotScale { range: [0.0, 1.12 * max], kind: ScaleKind::Linear },
     );
     canvas.border(frame, GREY);
     ticks_below(canvas, frame, &x, true);
@@ -245,9 +243,9 @@ fn furnace(canvas: &mut Canvas, frame: Frame, plate: &Plate) {
         named.push(Named { name: curve.name, color: curve.color, points });
     }
     if named.len() > 1 {
-        labels::write(canvas, Frame { x: frame.x + 2.0, w: frame.w - 4.0, ..frame }, &named, &others, 0.45);
+        labels::write(canvas, Rect { x: frame.x + 2.0, w: frame.w - 4.0, ..frame }, &named, &others, 0.45);
     }
-    let unbounded = curves.iter().filter(|curve| curve.portrait.rho.is_err());
+    let unbounded = curves.iter().filter(|curve| curve.figure.rho.is_err());
     for (k, curve) in unbounded.enumerate() {
         let said = format!("{}: no bound", curve.name);
         let y = frame.y + 0.5 * frame.h + 20.0 * k as f32;
@@ -264,7 +262,7 @@ fn discs(canvas: &mut Canvas, top: f32, width: f32, plate: &Plate) {
         let bar = if k >= plate.thetas.len() { BAR_ROOM } else { 0.0 };
         24.0 + LABELS + bar + k as f32 * (DISC + gap)
     };
-    let values = plate.portraits.iter().filter_map(|portrait| portrait.values.as_ref());
+    let values = plate.figures.iter().filter_map(|figure| figure.values.as_ref());
     let has_values = values.clone().next().is_some();
     let scale = colors(values.flat_map(|values| &values.lobes).map(|lobes| &lobes.hemisphere[..]));
     let exposure = exposure(plate);
@@ -282,34 +280,34 @@ fn discs(canvas: &mut Canvas, top: f32, width: f32, plate: &Plate) {
     heading(count, ["point light, 45° from the eye", &format!("white: π f cos θi = {white} and more")]);
     heading(count + 1, ["uniform light: ρ_dh(θe)", "white: 1, as the furnace behind it"]);
 
-    for (row, (portrait, color)) in plate.portraits.iter().zip(CURVES).enumerate() {
+    for (row, (figure, color)) in plate.figures.iter().zip(CURVES).enumerate() {
         let y = top + HEADING + ROW * row as f32;
-        if plate.portraits.len() > 1 {
-            label(canvas, (24.0, y + 0.5 * DISC), &portrait.label, color);
+        if plate.figures.len() > 1 {
+            label(canvas, (24.0, y + 0.5 * DISC), &figure.label, color);
         }
-        let frame = |k: usize| Frame { x: column(k), y, w: DISC, h: DISC };
+        let frame = |k: usize| Rect { x: column(k), y, w: DISC, h: DISC };
         for (k, &theta_i) in plate.thetas.iter().enumerate() {
-            let title = format!("{}, θi = {}°: f over the hemisphere", portrait.label, degrees(theta_i));
-            match &portrait.values {
+            let title = format!("{}, θi = {}°: f over the hemisphere", figure.label, degrees(theta_i));
+            match &figure.values {
                 Some(values) => hemisphere(canvas, frame(k), &values.lobes[k].hemisphere, &scale, &title),
                 None => empty(canvas, frame(k), ["a delta:", "no values"]),
             }
-            marks(canvas, frame(k), theta_i, portrait.values.is_some());
+            marks(canvas, frame(k), theta_i, figure.values.is_some());
         }
-        match &portrait.values {
-            Some(values) => lit(canvas, frame(count), &values.sphere, exposure, &portrait.label),
+        match &figure.values {
+            Some(values) => lit(canvas, frame(count), &values.sphere, exposure, &figure.label),
             None => empty(canvas, frame(count), ["a delta:", "no values"]),
         }
-        match &portrait.rho {
-            Ok(rho) => uniform(canvas, frame(count + 1), rho, &portrait.label),
+        match &figure.rho {
+            Ok(rho) => uniform(canvas, frame(count + 1), rho, &figure.label),
             Err(_) => empty(canvas, frame(count + 1), ["ρ_dh has", "no bound"]),
         }
     }
     if has_values {
         let x = column(count) - gap - BAR_ROOM + 14.0;
-        color_bar(canvas, Frame { x, y: top + HEADING, w: 14.0, h: DISC }, &scale, "f [sr⁻¹]");
+        color_bar(canvas, Rect { x, y: top + HEADING, w: 14.0, h: DISC }, &scale, "f [sr⁻¹]");
     }
-    let y = top + HEADING + ROW * plate.portraits.len() as f32 + 6.0;
+    let y = top + HEADING + ROW * plate.figures.len() as f32 + 6.0;
     let mut x = column(0);
     ring(canvas, (x + 6.0, y), false);
     canvas.text("ωi", (x + 18.0, y), TICK_SIZE, Align::Left, BLACK);
@@ -320,7 +318,7 @@ fn discs(canvas: &mut Canvas, top: f32, width: f32, plate: &Plate) {
 
 /// The scale of f over all hemispheres: down to what 95 % of each exceed, over sixteen decades at most, so
 /// that a narrow lobe leaves some of it to a wide one.
-fn colors<'a>(hemispheres: impl Iterator<Item = &'a [[f32; 3]]>) -> Scale {
+fn colors<'a>(hemispheres: impl Iterator<Item = &'a [[f32; 3]]>) -> PlotScale {
     let (mut all, mut low) = (Vec::new(), f64::INFINITY);
     for hemisphere in hemispheres {
         let f = hemisphere.iter().map(|f| luminance(f.map(f64::from)));
@@ -331,8 +329,8 @@ fn colors<'a>(hemispheres: impl Iterator<Item = &'a [[f32; 3]]>) -> Scale {
         }
         all.extend(f);
     }
-    let mut scale = Scale::of_values(all.iter().copied(), true);
-    if scale.kind == Kind::Log {
+    let mut scale = PlotScale::of_values(all.iter().copied(), true);
+    if scale.kind == ScaleKind::Log {
         let high = scale.range[1];
         scale.range[0] = low.clamp(1e-16 * high, 0.1 * high);
     }
@@ -358,7 +356,7 @@ fn label(canvas: &mut Canvas, (x, y): (f32, f32), text: &str, color: Color) {
 }
 
 /// A circle with words in place of what is not there.
-fn empty(canvas: &mut Canvas, frame: Frame, words: [&str; 2]) {
+fn empty(canvas: &mut Canvas, frame: Rect, words: [&str; 2]) {
     let (x, y) = (frame.x + 0.5 * frame.w, frame.y + 0.5 * frame.h);
     canvas.arc((x, y), 0.5 * frame.w, [0.0, 2.0 * PI], 1.0, PALE);
     for (word, dy) in words.into_iter().zip([-24.0, -4.0]) {
@@ -366,7 +364,7 @@ fn empty(canvas: &mut Canvas, frame: Frame, words: [&str; 2]) {
     }
 }
 
-fn hemisphere(canvas: &mut Canvas, frame: Frame, f: &[[f32; 3]], scale: &Scale, title: &str) {
+fn hemisphere(canvas: &mut Canvas, frame: Rect, f: &[[f32; 3]], scale: &PlotScale, title: &str) {
     let color = |&f: &[f32; 3]| {
         let value = luminance(f.map(f64::from));
         if value.is_finite() { viridis(scale.at(value)) } else { WHITE }
@@ -374,7 +372,7 @@ fn hemisphere(canvas: &mut Canvas, frame: Frame, f: &[[f32; 3]], scale: &Scale, 
     disc(canvas, frame, f.iter().map(color).collect(), title);
 }
 
-fn lit(canvas: &mut Canvas, frame: Frame, samples: &[[f32; 3]], exposure: f32, label: &str) {
+fn lit(canvas: &mut Canvas, frame: Rect, samples: &[[f32; 3]], exposure: f32, label: &str) {
     let clipped = |f: [f32; 3]| f.map(|f| (f * exposure).clamp(0.0, 1.0));
     let color = |k: usize| match radius(k) {
         r if r <= 1.0 => pixel(samples, k / SIDE, k % SIDE, clipped).map(|x| srgb(f64::from(x))),
@@ -389,7 +387,7 @@ fn lit(canvas: &mut Canvas, frame: Frame, samples: &[[f32; 3]], exposure: f32, l
 }
 
 /// Radiance under radiance 1 from everywhere: ρ_hd(θe), which is ρ_dh(θe) by reciprocity.
-fn uniform(canvas: &mut Canvas, frame: Frame, rho: &Reflectance, label: &str) {
+fn uniform(canvas: &mut Canvas, frame: Rect, rho: &Reflectance, label: &str) {
     let color = |k: usize| match radius(k) {
         r if r <= 1.0 => match rho.at(r.asin()) {
             rho if rho.iter().any(|&rho| rho > 1.002) => GAIN,
@@ -406,7 +404,7 @@ fn uniform(canvas: &mut Canvas, frame: Frame, rho: &Reflectance, label: &str) {
 }
 
 /// Pixels, and the border of their disc.
-fn disc(canvas: &mut Canvas, frame: Frame, colors: Vec<Color>, title: &str) {
+fn disc(canvas: &mut Canvas, frame: Rect, colors: Vec<Color>, title: &str) {
     canvas.image(frame, Pixels { width: SIDE, colors }, title);
     let middle = (frame.x + 0.5 * frame.w, frame.y + 0.5 * frame.h);
     canvas.arc(middle, 0.5 * frame.w + 0.5, [0.0, 2.0 * PI], 1.2, [150; 3]);
@@ -419,7 +417,7 @@ fn radius(k: usize) -> f64 {
 }
 
 /// ωi and the mirror direction on a hemisphere.
-fn marks(canvas: &mut Canvas, frame: Frame, theta_i: f64, on_dark: bool) {
+fn marks(canvas: &mut Canvas, frame: Rect, theta_i: f64, on_dark: bool) {
     let (x, y) = (frame.x + 0.5 * frame.w, frame.y + 0.5 * frame.h);
     let off = 0.5 * frame.w * theta_i.sin() as f32;
     ring(canvas, (x - off, y), on_dark);
@@ -444,7 +442,7 @@ fn cross(canvas: &mut Canvas, (x, y): (f32, f32), on_dark: bool) {
 /// A power of two, 1 to 64, by which the brightest of the spheres, but for its brightest pixels, is below
 /// white.
 fn exposure(plate: &Plate) -> f32 {
-    let values = plate.portraits.iter().filter_map(|portrait| portrait.values.as_ref());
+    let values = plate.figures.iter().filter_map(|figure| figure.values.as_ref());
     let bright = values.filter_map(|values| {
         let mut lit: Vec<f32> =
             values.sphere.iter().map(|f| f[0].max(f[1]).max(f[2])).filter(|&f| f > 0.0).collect();

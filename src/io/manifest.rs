@@ -88,7 +88,7 @@ pub(super) fn read(path: &Path) -> Result<Option<Value>> {
 /// JSON for people: a line for each member of an object, arrays on one line.
 pub(super) fn to_json(manifest: &impl Serialize) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    let mut serializer = Serializer::with_formatter(&mut bytes, Lines(PrettyFormatter::new()));
+    let mut serializer = Serializer::with_formatter(&mut bytes, FlatArrays(PrettyFormatter::new()));
     let done = manifest.serialize(&mut serializer);
     done.map_err(|error| Error::Internal(format!("{MANIFEST}: {error}")))?;
     bytes.push(b'\n');
@@ -137,9 +137,9 @@ fn is_plain(name: &str) -> bool {
 }
 
 /// Objects as [`PrettyFormatter`] has them; arrays without line breaks, or each axis would fill a page.
-struct Lines<'a>(PrettyFormatter<'a>);
+struct FlatArrays<'a>(PrettyFormatter<'a>);
 
-impl Formatter for Lines<'_> {
+impl Formatter for FlatArrays<'_> {
     fn begin_array_value<W: ?Sized + Write>(&mut self, writer: &mut W, first: bool) -> io::Result<()> {
         writer.write_all(if first { b"" } else { b", " })
     }

@@ -18,12 +18,12 @@ pub(crate) struct Pairs {
     /// How many it has, where its header says so.
     pub count: Option<u64>,
     read: u64,
-    source: Source,
+    source: PairReader,
 }
 
-enum Source {
+enum PairReader {
     Npy(BufReader<File>, Number),
-    Csv(Lines),
+    Csv(CsvLines),
 }
 
 /// How an NPY file writes a number.
@@ -45,11 +45,16 @@ impl Pairs {
             ListFormat::Npy => {
                 let mut file = BufReader::new(file);
                 let (number, rows) = npy_header(&mut file).map_err(|why| why.explain(path))?;
-                (Some(rows), Source::Npy(file, number))
+                (Some(rows), PairReader::Npy(file, number))
             }
             ListFormat::Csv => (
                 None,
-                Source::Csv(Lines { file: BufReader::new(file), line: 0, bytes: Vec::new(), began: false }),
+                PairReader::Csv(CsvLines {
+                    file: BufReader::new(file),
+                    line: 0,
+                    bytes: Vec::new(),
+                    began: false,
+                }),
             ),
         };
         Ok(Self { path: path.to_owned(), count, read: 0, source })
@@ -62,7 +67,7 @@ impl Pairs {
     pub fn next(&mut self, most: usize, angles: &mut Vec<Angles>) -> Result<()> {
         angles.clear();
         match &mut self.source {
-            Source::Npy(file, number) => {
+            PairReader::Npy(file, number) => {
                 let left = self.count.unwrap_or(0) - self.read;
                 let rows = usize::try_from(left).unwrap_or(most).min(most);
                 let mut bytes = vec![0; rows * 4 * number.bytes];
@@ -80,7 +85,7 @@ impl Pairs {
                     angles.push(pair);
                 }
             }
-            Source::Csv(lines) => {
+            PairReader::Csv(lines) => {
                 while angles.len() < most
                     && let Some(pair) = lines.next(&self.path)?
                 {
@@ -100,14 +105,14 @@ fn angles_of([theta_i, phi_i, theta_e, phi_e]: [f64; 4]) -> Angles {
 // ---- CSV -------------------------------------------------------------------------------------------
 
 /// A CSV file, line by line. Blank lines and comments are passed over.
-struct Lines {
+struct CsvLines {
     file: BufReader<File>,
     line: u64,
     bytes: Vec<u8>,
     began: bool,
 }
 
-impl Lines {
+impl CsvLines {
     /// The next four numbers; `None` at the end.
     fn next(&mut self, path: &Path) -> Result<Option<Angles>> {
         /// No line of four numbers is so long.

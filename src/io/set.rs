@@ -48,7 +48,7 @@ pub struct TableSet {
     /// The files staged so far.
     staged: BTreeSet<String>,
     /// Whether the folder was made here: then it goes again if nothing comes of it.
-    made: bool,
+    is_new: bool,
     committed: bool,
     _lock: File,
 }
@@ -70,7 +70,7 @@ impl TableSet {
     /// When the folder cannot be written, another bake is writing into it, or it holds a `manifest.json`
     /// that is not ours.
     pub fn create(dir: &Path) -> Result<Self> {
-        let made = !dir.exists();
+        let is_new = !dir.exists();
         fs::create_dir_all(dir).map_err(explain("create the folder", dir))?;
         let lock = open_lock(dir)?;
         match lock.try_lock() {
@@ -83,7 +83,7 @@ impl TableSet {
             }
             Err(TryLockError::Error(error)) => lockless(error, dir)?,
         }
-        settle(dir)?;
+        complete_or_discard(dir)?;
         let old = manifest::read(&dir.join(MANIFEST))?.as_ref().map(manifest::listed).unwrap_or_default();
         let staging = dir.join(STAGING);
         fs::create_dir(&staging).map_err(explain("create the folder", &staging))?;
@@ -92,7 +92,7 @@ impl TableSet {
             old,
             stems: BTreeSet::new(),
             staged: BTreeSet::new(),
-            made,
+            is_new,
             committed: false,
             _lock: lock,
         })
@@ -251,7 +251,7 @@ impl Drop for TableSet {
         }
         // Whatever stays is cleared by the next bake.
         let _ = fs::remove_dir_all(self.dir.join(STAGING));
-        if self.made {
+        if self.is_new {
             let _ = fs::remove_file(self.dir.join(LOCK));
             let _ = fs::remove_dir(&self.dir); // only if it is empty
         }
@@ -265,11 +265,11 @@ pub(super) fn recover(dir: &Path) -> Result<()> {
     }
     let lock = open_lock(dir)?;
     lock.lock().or_else(|error| lockless(error, dir))?;
-    settle(dir)
+    complete_or_discard(dir)
 }
 
-/// Makes the folder whole: the new set if it was committed, else the old one. The lock is held.
-fn settle(dir: &Path) -> Result<()> {
+/// Completes the new set if it was committed, else keeps the old one. The caller holds the lock.
+fn complete_or_discard(dir: &Path) -> Result<()> {
     if dir.join(NEXT).exists() { roll_forward(dir) } else { clear(&dir.join(STAGING)) }
 }
 

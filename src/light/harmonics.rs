@@ -89,7 +89,7 @@ pub fn coefficients(light: &Light) -> Coefficients {
             })
         }
         Light::Sky(sky) => sky_coefficients(sky),
-        Light::Map(map) => Factors::new(map).sum(),
+        Light::Map(map) => MapFactors::new(map).sum(),
     }
 }
 
@@ -111,7 +111,7 @@ fn sky_coefficients(sky: &Sky) -> Coefficients {
 /// coefficient is the sum over rows of a factor times one of five sums over columns.
 ///
 /// The twin of `shaders/light/harmonics.wgsl`, in f64, and all that the shader is given.
-pub(crate) struct Factors<'a> {
+pub(crate) struct MapFactors<'a> {
     pub map: &'a Environment,
     /// For each row that of each coefficient.
     pub rows: Vec<[f64; 9]>,
@@ -121,7 +121,7 @@ pub(crate) struct Factors<'a> {
     pub step: f64,
 }
 
-impl<'a> Factors<'a> {
+impl<'a> MapFactors<'a> {
     pub fn new(map: &'a Environment) -> Self {
         let column = |column: usize| {
             let [a, b] = map.cell(0, column).phi;

@@ -75,7 +75,7 @@ pub(crate) struct Column {
 pub(crate) type Sums = [[f64; 3]; 3];
 
 /// A map, ready to be integrated.
-pub(crate) struct Prepared<'a> {
+pub(crate) struct PreparedMap<'a> {
     pub map: Cow<'a, Environment>,
     pub rows: Vec<Row>,
     pub columns: Vec<Column>,
@@ -100,7 +100,7 @@ pub(crate) struct Normal {
     pub place: f64,
 }
 
-impl<'a> Prepared<'a> {
+impl<'a> PreparedMap<'a> {
     pub fn new(map: &'a Environment) -> Self {
         let map = map.at_least(LEAST[0], LEAST[1]);
         let cos_sin = |angle: f64| [angle.cos(), angle.sin()];

@@ -1,20 +1,20 @@
-//! Weights as polynomials in what a material takes: numbers where that is the same everywhere, else formulas in words.
+//! Weights as polynomials in a material's quantities: numbers if those are constant, else formulas in text.
 
 use std::fmt;
 
 /// A sum of products of quantities, of their complements to 1 and of numbers, for R, G and B.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Formula(Vec<Product>);
+pub struct Formula(Vec<Monomial>);
 
 #[derive(Debug, Clone, PartialEq)]
-struct Product {
+struct Monomial {
     number: f64,
     terms: Vec<Term>,
 }
 
-/// What a material takes of a quantity: its factor, and how little textures leave of that.
+/// A material's quantity: its factor, and the least value that textures leave of it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Input {
+pub struct FormulaInput {
     /// What formulas call it.
     pub name: &'static str,
     /// Its largest values in R, G and B, in [0, 1].
@@ -26,7 +26,7 @@ pub struct Input {
 /// x, max(x) over the channels, or what either leaves of 1.
 #[derive(Debug, Clone, PartialEq)]
 struct Term {
-    of: Input,
+    of: FormulaInput,
     is_max: bool,
     is_rest: bool,
 }
@@ -34,7 +34,7 @@ struct Term {
 /// Formulas name these even where they do not vary.
 const ALWAYS_NAMED: [&str; 2] = ["metallic", "base_color"];
 
-impl Input {
+impl FormulaInput {
     /// One that is the same everywhere and in all channels.
     pub fn constant(name: &'static str, value: f64) -> Self {
         Self { name, value: [value; 3], least: None }
@@ -72,25 +72,25 @@ impl Input {
     }
 
     fn term(&self, is_max: bool, is_rest: bool) -> Formula {
-        Formula(vec![Product { number: 1.0, terms: vec![Term { of: self.clone(), is_max, is_rest }] }])
+        Formula(vec![Monomial { number: 1.0, terms: vec![Term { of: self.clone(), is_max, is_rest }] }])
     }
 }
 
 impl Formula {
-    /// A number.
+    /// Builds a constant.
     pub fn number(number: f64) -> Self {
-        Self(vec![Product { number, terms: Vec::new() }])
+        Self(vec![Monomial { number, terms: Vec::new() }])
     }
 
-    /// The sum of two.
+    /// Adds two formulas.
     pub fn plus(mut self, other: Self) -> Self {
         self.0.extend(other.0);
         self
     }
 
-    /// The product of two.
+    /// Multiplies two formulas.
     pub fn times(&self, other: &Self) -> Self {
-        let product = |a: &Product, b: &Product| Product {
+        let product = |a: &Monomial, b: &Monomial| Monomial {
             number: a.number * b.number,
             terms: a.terms.iter().chain(&b.terms).cloned().collect(),
         };
@@ -99,42 +99,46 @@ impl Formula {
 
     /// Whether a quantity in it varies.
     pub fn varies(&self) -> bool {
-        self.inputs().any(Input::varies)
+        self.inputs().any(FormulaInput::varies)
     }
 
     /// Whether it is 0 whatever textures hold.
     pub fn is_zero(&self) -> bool {
-        self.0.iter().all(Product::is_zero) || !self.varies() && self.value() == [0.0; 3]
+        self.0.iter().all(Monomial::is_zero) || !self.varies() && self.value() == [0.0; 3]
     }
 
-    /// R, G and B where no texture has a say.
+    /// Returns R, G and B if no texture varies.
     pub fn value(&self) -> [f64; 3] {
         self.at(&|_| None)
     }
 
-    /// R, G and B where these quantities have these values, the others their own.
+    /// Evaluates R, G and B with these values for some quantities, and the stored values for the others.
     pub fn at(&self, given: &dyn Fn(&str) -> Option<f64>) -> [f64; 3] {
-        let of = |term: &Term| term.of(given(term.of.name).map_or(term.of.value, |x| [x; 3]));
-        let product = |product: &Product| {
-            product.terms.iter().map(of).fold([product.number; 3], |a, b| [0, 1, 2].map(|c| a[c] * b[c]))
+        let evaluate = |term: &Term| term.of(given(term.of.name).map_or(term.of.value, |x| [x; 3]));
+        let product = |product: &Monomial| {
+            product
+                .terms
+                .iter()
+                .map(evaluate)
+                .fold([product.number; 3], |a, b| [0, 1, 2].map(|c| a[c] * b[c]))
         };
         // The first as it is: 0 + x is x, but −0.
         self.0.iter().map(product).reduce(|a, b| [0, 1, 2].map(|c| a[c] + b[c])).unwrap_or_default()
     }
 
-    /// What it may reach.
-    pub fn most(&self) -> f64 {
-        let product = |p: &Product| p.terms.iter().map(Term::most).fold(p.number.max(0.0), |a, b| a * b);
+    /// Returns its largest possible value.
+    pub fn maximum(&self) -> f64 {
+        let product = |p: &Monomial| p.terms.iter().map(Term::maximum).fold(p.number.max(0.0), |a, b| a * b);
         self.0.iter().map(product).sum()
     }
 
     /// The quantities in it.
-    pub fn inputs(&self) -> impl Iterator<Item = &Input> {
+    pub fn inputs(&self) -> impl Iterator<Item = &FormulaInput> {
         self.0.iter().filter(|p| p.number() != 0.0).flat_map(|p| p.terms.iter().map(|term| &term.of))
     }
 }
 
-impl Product {
+impl Monomial {
     /// The number that stands before its words.
     fn number(&self) -> f64 {
         self.terms.iter().filter_map(Term::folded).fold(self.number, |a, b| a * b)
@@ -153,7 +157,7 @@ impl Term {
         if self.is_rest { value.map(|x| 1.0 - x) } else { value }
     }
 
-    fn most(&self) -> f64 {
+    fn maximum(&self) -> f64 {
         let [low, high] = self.of.range();
         if self.is_rest { 1.0 - low } else { high }
     }

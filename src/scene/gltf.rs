@@ -18,7 +18,7 @@ use crate::base::error::{Error, Result};
 use crate::scene::{LeftOut, Scene};
 use ::gltf::json::{self, Root};
 use file::GltfFile;
-use source::Source;
+use source::MaterialSource;
 use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 
@@ -27,7 +27,7 @@ pub(super) fn read(path: &Path) -> Result<Scene> {
     let file = GltfFile::open(path)?;
     let mut scene = Scene { file: path.to_owned(), ..Scene::default() };
     let sources = sources(&file.root, &mut scene).map_err(|e| e.at(path.display()))?;
-    let texels = file.texels(sources.iter().flat_map(Source::images).collect());
+    let texels = file.texels(sources.iter().flat_map(MaterialSource::images).collect());
     for source in &sources {
         scene.warnings.extend(source.warnings());
         let material = source.read(&file, &texels, &mut scene);
@@ -37,7 +37,7 @@ pub(super) fn read(path: &Path) -> Result<Scene> {
 }
 
 /// The materials to bake, checked: those that a mesh uses, or all where the file has no mesh.
-fn sources(root: &Root, scene: &mut Scene) -> Result<Vec<Source>> {
+fn sources(root: &Root, scene: &mut Scene) -> Result<Vec<MaterialSource>> {
     check_nodes(root)?;
     let names = unique_names(root);
     let users = users(root)?;
@@ -53,12 +53,13 @@ fn sources(root: &Root, scene: &mut Scene) -> Result<Vec<Source>> {
         } else {
             let place = format!("materials[{index}] ({name})");
             let vertex_colors = user.is_some_and(|u| u.vertex_colors);
-            sources.push(Source::check(root, material, name, vertex_colors).map_err(|e| e.at(place))?);
+            sources
+                .push(MaterialSource::check(root, material, name, vertex_colors).map_err(|e| e.at(place))?);
         }
     }
     if let Some(user) = users.get(&None) {
         let name = unused_name(&names.into_iter().collect(), "default".into(), "_gltf");
-        sources.push(Source::check(root, &json::Material::default(), &name, user.vertex_colors)?);
+        sources.push(MaterialSource::check(root, &json::Material::default(), &name, user.vertex_colors)?);
     }
     if root.materials.is_empty() && users.is_empty() {
         return Err(Error::input("it has neither a material nor a mesh; nothing in it can be baked"));

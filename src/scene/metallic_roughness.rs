@@ -27,14 +27,14 @@ pub(super) fn energy(material: &Material) -> Violation {
     };
     let base = material.lobes.iter().map(|lobe| match lobe.model.as_str() {
         _ if stands_twice(material, lobe) || coat(lobe).is_some() => 0.0,
-        "gltf_diffuse" => DIFFUSE * most(lobe),
-        "gltf_oren_nayar" => most(lobe),
+        "gltf_diffuse" => DIFFUSE * largest_weight(lobe),
+        "gltf_oren_nayar" => largest_weight(lobe),
         // Lambert's is of what is not specular: with it these are 1. Oren and Nayar's is a little more.
-        "oren-nayar" => OREN_NAYAR * most(lobe),
-        model if model.ends_with("thin-film") => FILM * most(lobe),
+        "oren-nayar" => OREN_NAYAR * largest_weight(lobe),
+        model if model.ends_with("thin-film") => FILM * largest_weight(lobe),
         _ => 0.0,
     });
-    let coats = material.lobes.iter().filter_map(|lobe| Some(coat(lobe)? * most(lobe)));
+    let coats = material.lobes.iter().filter_map(|lobe| Some(coat(lobe)? * largest_weight(lobe)));
     Violation {
         property: "energy",
         bound: under_sheen(material, 1.0 + base.sum::<f64>()) + coats.sum::<f64>(),
@@ -47,7 +47,7 @@ pub(super) fn energy(material: &Material) -> Violation {
 pub(super) fn of_models(material: &Material) -> Option<Violation> {
     let violation = |lobe: &MaterialLobe| {
         let violation = model::find(&lobe.model).ok()?.violation()?;
-        (violation.bound.is_finite() && most(lobe) > 0.0).then_some(violation)
+        (violation.bound.is_finite() && largest_weight(lobe) > 0.0).then_some(violation)
     };
     let source = material.lobes.iter().find_map(violation)?.source;
     let base = material.lobes.iter().filter(|lobe| !is_sheen(material, lobe));
@@ -55,7 +55,9 @@ pub(super) fn of_models(material: &Material) -> Option<Violation> {
     // Of a lobe that Fresnel splits, F90 is the most that it shows.
     let shown = |lobe: &MaterialLobe| match &lobe.weights {
         Weights::Constant(weights) => weights.as_flattened().iter().copied().fold(0.0, f64::max),
-        Weights::Textured(formulas) => formulas.each_ref().map(Formula::most).into_iter().fold(0.0, f64::max),
+        Weights::Textured(formulas) => {
+            formulas.each_ref().map(Formula::maximum).into_iter().fold(0.0, f64::max)
+        }
     };
     let base = base.map(|lobe| if shown(lobe) > 0.0 { shown(lobe) * bound(lobe) } else { 0.0 });
     Some(Violation { property: "energy", bound: under_sheen(material, base.sum::<f64>().max(1.0)), source })
@@ -67,7 +69,7 @@ fn under_sheen(material: &Material, base: f64) -> f64 {
     let sheens = material.lobes.iter().filter(|lobe| is_sheen(material, lobe));
     sheens.fold(base, |base, lobe| {
         let bound = model::find(&lobe.model).map_or(1.0, |model| model.rho_bound);
-        base.max(most(lobe) * bound + (1.0 - most(lobe)) * base)
+        base.max(largest_weight(lobe) * bound + (1.0 - largest_weight(lobe)) * base)
     })
 }
 
@@ -90,10 +92,10 @@ fn stands_twice(material: &Material, lobe: &MaterialLobe) -> bool {
     })
 }
 
-/// The largest weight of its A.
-fn most(lobe: &MaterialLobe) -> f64 {
+/// Returns the largest weight of component A.
+fn largest_weight(lobe: &MaterialLobe) -> f64 {
     match &lobe.weights {
         Weights::Constant(weights) => weights[0].into_iter().fold(0.0, f64::max),
-        Weights::Textured(formulas) => formulas[0].most(),
+        Weights::Textured(formulas) => formulas[0].maximum(),
     }
 }

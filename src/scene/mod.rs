@@ -10,7 +10,7 @@ mod recipe;
 mod varying;
 
 pub use distribution::Distribution;
-pub use formula::{Formula, Input};
+pub use formula::{Formula, FormulaInput};
 pub use recipe::parse as parse_recipe;
 
 use crate::base::error::{Error, Result};

@@ -512,18 +512,22 @@ fn lobes_of(
     [a, b]: [[f64; 3]; 2],
     roughness: Option<f64>,
 ) -> Result<Vec<Lobe>> {
-    let of = |(parameters, of)| {
-        let (a, b) = (masked(a, of), masked(b, of));
+    let split = |(parameters, channels)| {
+        let (a, b) = (masked(a, channels), masked(b, channels));
         let weights = (0..3).map(|c| [a[c], b[c]]).collect();
         let factors = lobe.factors.clone();
         let whole = Lobe::new(model, roughness, weights)?.with_parameters(parameters).with_factors(factors);
         lobe.compensation.lobes(whole).map(|lobes| {
             // Those of the other channels alone, whose setting is another, are nothing.
-            let is_own = move |lobe: &Lobe| lobe.weights().iter().zip(of).any(|(w, of)| of && *w != [0.0; 2]);
-            lobes.into_iter().filter(move |lobe| of == [true; 3] || lobe.factors().is_empty() || is_own(lobe))
+            let is_own = move |lobe: &Lobe| {
+                lobe.weights().iter().zip(channels).any(|(w, used)| used && *w != [0.0; 2])
+            };
+            lobes
+                .into_iter()
+                .filter(move |lobe| channels == [true; 3] || lobe.factors().is_empty() || is_own(lobe))
         })
     };
-    let lobes = settings_of(lobe, model).into_iter().map(of).collect::<Result<Vec<_>>>()?;
+    let lobes = settings_of(lobe, model).into_iter().map(split).collect::<Result<Vec<_>>>()?;
     Ok(lobes.into_iter().flatten().collect())
 }
 

@@ -3,7 +3,7 @@
 
 use crate::bake::Observer;
 use crate::base::error::Result;
-use crate::verify::energy::{NAME, Place, Rho, finding};
+use crate::verify::energy::{Incidence, NAME, Rho, finding};
 use crate::verify::inputs::{settings, thetas};
 use crate::verify::probe::Probe;
 use crate::verify::report::Finding;
@@ -80,12 +80,12 @@ fn places(
     settings: &[Vec<f64>],
     thetas: &[f64],
     channels: usize,
-) -> Result<Vec<Place>> {
+) -> Result<Vec<Incidence>> {
     let rho = subject.rho_dh(settings, thetas)?.unwrap_or_default();
     let inputs = settings.iter().flat_map(|setting| thetas.iter().map(move |&theta| (setting, theta)));
     Ok(inputs
         .zip(rho.chunks_exact(channels))
-        .map(|((setting, theta_i), rho)| Place {
+        .map(|((setting, theta_i), rho)| Incidence {
             // What the integral may be off by is in the tolerance.
             rho: Rho { value: rho.iter().copied().fold(f64::NEG_INFINITY, f64::max), estimate: 0.0 },
             setting: setting.clone(),
@@ -96,12 +96,12 @@ fn places(
 }
 
 /// The first of the largest.
-fn largest(places: &[Place]) -> Option<&Place> {
+fn largest(places: &[Incidence]) -> Option<&Incidence> {
     places.iter().rev().max_by(|a, b| a.rho.value.total_cmp(&b.rho.value))
 }
 
 /// A place's setting, and others near it.
-fn around(place: &Place, parameters: &[Parameter], distance: f64, chance: &mut Chance) -> Vec<Vec<f64>> {
+fn around(place: &Incidence, parameters: &[Parameter], distance: f64, chance: &mut Chance) -> Vec<Vec<f64>> {
     let mut settings = vec![place.setting.clone()];
     if parameters.iter().any(|parameter| parameter.low < parameter.high) {
         settings.extend((0..AROUND).map(|_| {

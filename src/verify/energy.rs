@@ -54,7 +54,7 @@ impl Rho {
     }
 }
 
-pub(super) struct Place {
+pub(super) struct Incidence {
     pub rho: Rho,
     pub setting: Vec<f64>,
     pub theta_i: f64,
@@ -78,7 +78,7 @@ pub(super) fn check(
     for setting in &settings {
         for &(theta_i, phi_i) in &incidences {
             let rho = rules.rho(probe, setting, theta_i, phi_i)?;
-            places.push(Place { rho, setting: setting.clone(), theta_i, phi_i });
+            places.push(Incidence { rho, setting: setting.clone(), theta_i, phi_i });
         }
         observer.advance(0.8 / settings.len() as f64)?;
     }
@@ -92,15 +92,15 @@ pub(super) fn check(
         }
     }
     // The first of equals.
-    let most = places.iter().rev().max_by(|a, b| a.rho.certain().total_cmp(&b.rho.certain()));
-    Ok(finding(probe, most, least, tolerance))
+    let largest = places.iter().rev().max_by(|a, b| a.rho.certain().total_cmp(&b.rho.certain()));
+    Ok(finding(probe, largest, least, tolerance))
 }
 
 /// Climbs on ρ over the incidence and the parameters.
-fn climb(rules: &Rules, probe: &mut Probe, from: &Place, number: u64) -> Result<Place> {
+fn climb(rules: &Rules, probe: &mut Probe, from: &Incidence, number: u64) -> Result<Incidence> {
     let parameters = probe.parameters().to_vec();
     let mut chance = Chance(number);
-    let mut worst = Place { rho: from.rho, setting: from.setting.clone(), ..*from };
+    let mut worst = Incidence { rho: from.rho, setting: from.setting.clone(), ..*from };
     let mut radius = 0.1;
     for _ in 0..ROUNDS {
         let mut vain = true;
@@ -115,7 +115,7 @@ fn climb(rules: &Rules, probe: &mut Probe, from: &Place, number: u64) -> Result<
                 .collect();
             let rho = rules.rho(probe, &setting, theta_i, phi_i)?;
             if rho.certain() > worst.rho.certain() {
-                worst = Place { rho, setting, theta_i, phi_i };
+                worst = Incidence { rho, setting, theta_i, phi_i };
                 vain = false;
             }
         }
@@ -124,7 +124,7 @@ fn climb(rules: &Rules, probe: &mut Probe, from: &Place, number: u64) -> Result<
     Ok(worst)
 }
 
-pub(super) fn finding(probe: &Probe, most: Option<&Place>, least: f64, tolerance: f64) -> Finding {
+pub(super) fn finding(probe: &Probe, most: Option<&Incidence>, least: f64, tolerance: f64) -> Finding {
     let Some(place) = most else { return Finding::unseen(NAME, probe) };
     let Rho { value, estimate } = place.rho;
     let worst = Worst {
@@ -182,8 +182,8 @@ impl Rules {
             let (coarse, fine) = (sum(&coarse, first, channel), sum(&fine, second, channel));
             Rho { value: fine, estimate: (fine - coarse).abs() }
         });
-        let most = rhos.max_by(|a, b| a.certain().total_cmp(&b.certain()));
-        Ok(most.unwrap_or(Rho { value: 0.0, estimate: 0.0 }))
+        let largest = rhos.max_by(|a, b| a.certain().total_cmp(&b.certain()));
+        Ok(largest.unwrap_or(Rho { value: 0.0, estimate: 0.0 }))
     }
 }
 

@@ -80,11 +80,11 @@ fn judge(
     let mut order: Vec<_> = (0..inputs.len()).filter(|&k| deviations[k] > f64::NEG_INFINITY).collect();
     // The first of equals: inputs on the grid are the easiest to read.
     order.sort_by(|&a, &b| deviations[b].total_cmp(&deviations[a]));
-    let mut taken = 0;
+    let mut added = 0;
     for k in order {
         let worst = Worst { deviation: deviations[k], setting: setting.to_vec(), angles: inputs[k] };
-        taken += usize::from(seeds.add(worst, probe.parameters()));
-        if taken == CANDIDATES || seeds.is_full_of_worse(deviations[k]) {
+        added += usize::from(seeds.add(worst, probe.parameters()));
+        if added == CANDIDATES || seeds.is_full_of_worse(deviations[k]) {
             break;
         }
     }
@@ -121,8 +121,8 @@ struct Seeds(Vec<Worst>);
 impl Seeds {
     /// Takes an input if it is among the worst, in the place of lesser ones near it.
     fn add(&mut self, worst: Worst, parameters: &[Parameter]) -> bool {
-        let place = Place::of(&worst, parameters);
-        let near = |other: &Worst| Place::of(other, parameters).distance(&place) < APART;
+        let place = Coordinates::of(&worst, parameters);
+        let near = |other: &Worst| Coordinates::of(other, parameters).distance(&place) < APART;
         if self.0.iter().any(|other| other.deviation >= worst.deviation && near(other)) {
             return false;
         }
@@ -146,7 +146,7 @@ fn climb(property: &mut dyn Property, probe: &mut Probe, seed: &Worst, number: u
     let mut worst = seed.clone();
     let mut vain = 0;
     for round in 0..ROUNDS {
-        let place = Place::of(&worst, &parameters);
+        let place = Coordinates::of(&worst, &parameters);
         // A setting is shared by the tries of a round; every other round moves it.
         let mut moved = place.clone();
         if round % 2 == 1 && !free.is_empty() {
@@ -185,12 +185,12 @@ fn step(chance: &mut Chance) -> f64 {
 
 /// An input's coordinates, each of range 1 or so: θi, φi, θe, δφ and the parameters.
 #[derive(Debug, Clone)]
-struct Place {
+struct Coordinates {
     angles: [f64; 4],
     setting: Vec<f64>,
 }
 
-impl Place {
+impl Coordinates {
     fn of(worst: &Worst, parameters: &[Parameter]) -> Self {
         let Angles { theta_i, phi_i, theta_e, phi_e } = worst.angles;
         Self {

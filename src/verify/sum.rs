@@ -303,9 +303,9 @@ impl Subject for Sum<'_> {
                 let is_of = |lobe: &Lobe, parameters: &Parameters, factors: &[Factor]| {
                     lobe.parameters() == *parameters && lobe.factors() == factors
                 };
-                let made = tables.iter().position(|(p, f, ..)| is_of(lobe, p, f));
-                let made = match made {
-                    Some(made) => made,
+                let index = tables.iter().position(|(p, f, ..)| is_of(lobe, p, f));
+                let index = match index {
+                    Some(index) => index,
                     None => {
                         let alike =
                             lobes.iter().filter(|other| is_of(other, &lobe.parameters(), lobe.factors()));
@@ -315,18 +315,18 @@ impl Subject for Sum<'_> {
                         tables.len() - 1
                     }
                 };
-                let (.., roughnesses, table) = &tables[made];
-                let row = lobe.model().shape.map_or(0, |_| place(roughnesses, roughness(lobe)));
+                let (.., roughnesses, table) = &tables[index];
+                let row = lobe.model().shape.map_or(0, |_| index_of(roughnesses, roughness(lobe)));
                 // Of azimuths, the one that reflects most.
                 let azimuths = if lobe.model().is_anisotropic() { PHIS.len() } else { 1 };
                 for (&theta, rho) in thetas.iter().zip(rho.chunks_exact_mut(CHANNELS)) {
-                    let first = (row * columns.len() + place(&columns, theta)) * azimuths;
+                    let first = (row * columns.len() + index_of(&columns, theta)) * azimuths;
                     let texels: Vec<_> = (first..first + azimuths).map(|k| table.texel(k)).collect();
                     for (rho, weights) in rho.iter_mut().zip(lobe.weights()) {
-                        let at = |texel: &Vec<f64>| -> f64 {
+                        let reflectance = |texel: &Vec<f64>| -> f64 {
                             weights.iter().zip(texel).map(|(weight, value)| weight * value).sum()
                         };
-                        *rho += texels.iter().map(at).fold(0.0, f64::max);
+                        *rho += texels.iter().map(reflectance).fold(0.0, f64::max);
                     }
                 }
             }
@@ -433,7 +433,7 @@ fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
 }
 
 /// The index of one of them.
-fn place(values: &[f64], value: f64) -> usize {
+fn index_of(values: &[f64], value: f64) -> usize {
     values.partition_point(|&v| v < value)
 }
 

@@ -60,9 +60,9 @@ impl UserFunction {
         let (parameters, channels) = signature(&module, &info, entry).map_err(|error| error.at(&file))?;
         let named = |function: &Function| function.name.as_deref() == Some(entry);
         let loops = module.functions.iter().any(|(_, f)| named(f) && has_loop(&module, &f.body));
-        let taken =
+        let is_bound =
             |group| module.global_variables.iter().any(|(_, v)| v.binding.is_some_and(|b| b.group == group));
-        let group = (0..GROUPS).find(|&group| !taken(group)).ok_or_else(|| {
+        let group = (0..GROUPS).find(|&group| !is_bound(group)).ok_or_else(|| {
             Error::input(format!("{file}: all of the groups 0 to 3 have bindings; leave one for the check"))
         })?;
         Ok(Self { file, source, entry: entry.into(), parameters, channels, loops, group })
@@ -73,33 +73,33 @@ impl UserFunction {
         &self.parameters
     }
 
-    /// The module that runs it.
+    /// Composes the module that runs the function.
     fn compose(&self) -> String {
-        // Nobody's names are ours.
-        let mut own = String::from("gonio");
-        while self.source.contains(&own) {
-            own += "_x";
+        // The prefix must not occur in the user's source.
+        let mut prefix = String::from("gonio");
+        while self.source.contains(&prefix) {
+            prefix += "_x";
         }
         let Self { source, entry, group, channels, .. } = self;
         let arguments: String = (0..self.parameters.len())
-            .map(|k| format!(", {own}_job.setting[{}][{}]", k / 4, k % 4))
+            .map(|k| format!(", {prefix}_job.setting[{}][{}]", k / 4, k % 4))
             .collect();
         let vectors = self.parameters.len().div_ceil(4).max(1);
         let stores: String = match channels {
-            1 => format!("{own}_values[k] = f;"),
-            _ => (0..3).map(|c| format!("{own}_values[3u * k + {c}u] = f[{c}]; ")).collect(),
+            1 => format!("{prefix}_values[k] = f;"),
+            _ => (0..3).map(|c| format!("{prefix}_values[3u * k + {c}u] = f[{c}]; ")).collect(),
         };
         format!(
             "{source}
-struct {own}_Job {{ setting: array<vec4<f32>, {vectors}>, count: u32 }}
-@group({group}) @binding(0) var<uniform> {own}_job: {own}_Job;
-@group({group}) @binding(1) var<storage, read> {own}_pairs: array<vec4<f32>>;
-@group({group}) @binding(2) var<storage, read_write> {own}_values: array<f32>;
+struct {prefix}_Job {{ setting: array<vec4<f32>, {vectors}>, count: u32 }}
+@group({group}) @binding(0) var<uniform> {prefix}_job: {prefix}_Job;
+@group({group}) @binding(1) var<storage, read> {prefix}_pairs: array<vec4<f32>>;
+@group({group}) @binding(2) var<storage, read_write> {prefix}_values: array<f32>;
 @compute @workgroup_size({WORKGROUP})
-fn {own}_main(@builtin(global_invocation_id) id: vec3<u32>) {{
+fn {prefix}_main(@builtin(global_invocation_id) id: vec3<u32>) {{
     let k = id.x;
-    if (k >= {own}_job.count) {{ return; }}
-    let f = {entry}({own}_pairs[2u * k].xyz, {own}_pairs[2u * k + 1u].xyz{arguments});
+    if (k >= {prefix}_job.count) {{ return; }}
+    let f = {entry}({prefix}_pairs[2u * k].xyz, {prefix}_pairs[2u * k + 1u].xyz{arguments});
     {stores}
 }}
 "

@@ -8,7 +8,7 @@ use gonio::base::angles::Angles;
 use gonio::model::MODELS;
 use gonio::model::compensation::Compensation;
 use gonio::model::lobe::Lobe;
-use gonio::scene::{Distribution, Formula, Input, Material, MaterialLobe, Weights};
+use gonio::scene::{Distribution, Formula, FormulaInput, Material, MaterialLobe, Weights};
 use gonio::verify::{
     Declared, Options, Parameter, Report, Subject, Sum, Symmetry, Tolerances, Verdict, check,
 };
@@ -29,7 +29,7 @@ fn verdict(report: &Report, property: &str) -> Verdict {
 
 /// As the scene reader makes them: textured weights, over these ranges.
 fn gltf(roughness: [f64; 2], metallic: [f64; 2], base_color: [f64; 2]) -> Material {
-    let input = |name, [least, most]: [f64; 2]| Input { name, value: [most; 3], least: Some(least) };
+    let input = |name, [least, most]: [f64; 2]| FormulaInput { name, value: [most; 3], least: Some(least) };
     let (m, c) = (input("metallic", metallic), input("base_color", base_color));
     let diffuse = [Formula::number(0.96).times(&m.rest()).times(&c.all()), Formula::default()];
     let f0 = Formula::number(0.04).times(&m.rest()).plus(m.all().times(&c.all()));

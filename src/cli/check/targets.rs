@@ -15,13 +15,13 @@ use crate::verify::{Parameter, Sum};
 use std::path::Path;
 
 /// A subject, and the `gonio eval` command for it without parameters and directions.
-pub struct Target<'a> {
+pub struct CheckTarget<'a> {
     pub subject: Sum<'a>,
     pub command: String,
 }
 
 /// Builds the subject of `--model NAME` with `--set`. Unset parameters are checked over their whole range.
-pub fn model<'a>(args: &Args, name: &str, evaluator: &'a Evaluator) -> Result<Target<'a>> {
+pub fn model<'a>(args: &Args, name: &str, evaluator: &'a Evaluator) -> Result<CheckTarget<'a>> {
     let mut model = model::find(name)?;
     let (mut fixed, mut ranges) = (Vec::new(), Vec::new());
     let mut compensation = Compensation::None;
@@ -78,7 +78,7 @@ pub fn model<'a>(args: &Args, name: &str, evaluator: &'a Evaluator) -> Result<Ta
     for (key, value) in &fixed {
         command += &format!(" --set {}", quoted(&format!("{key}={value}")));
     }
-    Ok(Target { subject: Sum::compensated(evaluator, lobe, compensation, ranges)?, command })
+    Ok(CheckTarget { subject: Sum::compensated(evaluator, lobe, compensation, ranges)?, command })
 }
 
 /// Builds a subject for every basis, over the scene's range of roughness and all weights, and for every material.
@@ -87,7 +87,7 @@ pub fn scene<'a>(
     scene: &'a Scene,
     material: Option<&str>,
     evaluator: &'a Evaluator,
-) -> Result<Vec<Target<'a>>> {
+) -> Result<Vec<CheckTarget<'a>>> {
     let wanted: Vec<_> = match material {
         Some(name) => vec![scene.material(name)?],
         None => scene.materials.iter().collect(),
@@ -103,7 +103,7 @@ pub fn scene<'a>(
     for material in wanted {
         let (file, name) = (quoted(&path.display().to_string()), quoted(&material.name));
         let subject = Sum::material(evaluator, material)?;
-        targets.push(Target { subject, command: format!("gonio eval {file} --material {name}") });
+        targets.push(CheckTarget { subject, command: format!("gonio eval {file} --material {name}") });
     }
     if targets.is_empty() {
         return Err(Error::input(format!("{}: it has no material and no model to check", path.display())));
@@ -111,7 +111,11 @@ pub fn scene<'a>(
     Ok(targets)
 }
 
-fn basis<'a>(model: &'static Model, roughness: [f64; 2], evaluator: &'a Evaluator) -> Result<Target<'a>> {
+fn basis<'a>(
+    model: &'static Model,
+    roughness: [f64; 2],
+    evaluator: &'a Evaluator,
+) -> Result<CheckTarget<'a>> {
     let mut parameters = Vec::new();
     if model.shape.is_some() {
         let [low, high] = roughness;
@@ -120,7 +124,7 @@ fn basis<'a>(model: &'static Model, roughness: [f64; 2], evaluator: &'a Evaluato
     parameters.extend(beside_the_shape(model)?);
     let lobe = Lobe::new(model, model.shape.map(|_| 1.0), vec![[0.0; 2]; 3])?;
     let subject = Sum::model(evaluator, lobe, parameters)?;
-    Ok(Target { subject, command: format!("gonio eval --model {}", model.name) })
+    Ok(CheckTarget { subject, command: format!("gonio eval --model {}", model.name) })
 }
 
 /// Lists a model's parameters but roughness, and its components' weights, each over its whole range.

@@ -16,7 +16,7 @@ use serde_json::json;
 
 /// The factors of a microfacet lobe, by the reference.
 #[derive(Serialize)]
-struct Factors {
+struct LobeFactors {
     model: &'static str,
     /// D(ωm), sr⁻¹.
     #[serde(rename = "D")]
@@ -60,7 +60,7 @@ pub fn run(args: &Args, angles: &Angles) -> Result<()> {
         print(&format!("reference   {}    f64", by_channel(&plan, &reference)))?;
         print(&format!("difference  {difference:.1e} relative"))?;
         print(&format!("f cos θi    {}    of the device's f", by_channel(&plan, &f_cos)))?;
-        for Factors { model, d, g2, f } in &factors {
+        for LobeFactors { model, d, g2, f } in &factors {
             print(&format!("{HEADING}{model}{HEADING:#}, f = F D G2 / (4 cos θi cos θe), by the reference"))?;
             print(&format!("D           {d:.8e} sr⁻¹"))?;
             print(&format!("G2          {g2:.8e}"))?;
@@ -80,11 +80,11 @@ fn relative_difference(value: &[f32], reference: &[f64]) -> f64 {
     differences.fold(0.0, |max, d| if max >= d { max } else { d })
 }
 
-fn factors(lobe: &Lobe, angles: &Angles) -> Option<Factors> {
+fn factors(lobe: &Lobe, angles: &Angles) -> Option<LobeFactors> {
     let factors = ReferenceLobe::new(lobe, None)?.factors(&reference_angles(angles))?;
     let f = |&[a, b]: &[f64; 2]| a * factors.f[0] + b * factors.f[1];
     let f = lobe.weights().iter().map(f).collect();
-    Some(Factors { model: lobe.model().name, d: factors.d, g2: factors.g2, f })
+    Some(LobeFactors { model: lobe.model().name, d: factors.d, g2: factors.g2, f })
 }
 
 fn by_channel(plan: &TablePlan, values: &[f64]) -> String {

@@ -7,7 +7,7 @@ use crate::figure::light::{Ball, Sheet};
 use crate::light::bake::lobes_of;
 use crate::light::exitant;
 use crate::light::exitant::View;
-use crate::light::irradiance::{Prepared, in_closed_form};
+use crate::light::irradiance::{PreparedMap, in_closed_form};
 use crate::light::{Frame, Light, direction};
 use crate::model::lobe::Lobe;
 use crate::scene::Material;
@@ -87,7 +87,7 @@ fn irradiance(light: &Light, evaluator: &Evaluator, observer: &dyn Observer) -> 
     let normals = over(IRRADIANCE, |normal| normal);
     match light {
         Light::Map(map) => {
-            Prepared::new(map).of(evaluator, &normals, 1, &|share| observer.advance(0.2 * share))
+            PreparedMap::new(map).of(evaluator, &normals, 1, &|share| observer.advance(0.2 * share))
         }
         light => Ok(normals.iter().map(|&n| in_closed_form(light, n).unwrap_or_default()).collect()),
     }

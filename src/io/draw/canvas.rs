@@ -16,7 +16,7 @@ pub(crate) const WHITE: Color = [255; 3];
 
 /// A rectangle; y points down.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Frame {
+pub(crate) struct Rect {
     pub x: f32,
     pub y: f32,
     pub w: f32,
@@ -42,7 +42,7 @@ pub(crate) struct Pixels {
 
 /// Something drawn. Later marks lie over earlier ones.
 pub(crate) enum Mark {
-    Fill(Frame, Color),
+    Fill(Rect, Color),
     /// A line through points, with round ends and corners.
     Line {
         points: Vec<(f32, f32)>,
@@ -56,7 +56,7 @@ pub(crate) enum Mark {
     },
     /// Pixels over a frame, and what they show.
     Image {
-        frame: Frame,
+        frame: Rect,
         pixels: Pixels,
         title: String,
     },
@@ -105,16 +105,16 @@ impl Canvas {
     }
 
     /// Fills a rectangle, to whole pixels.
-    pub fn fill(&mut self, frame: Frame, color: Color) {
+    pub fn fill(&mut self, frame: Rect, color: Color) {
         self.marks.push(Mark::Fill(frame, color));
     }
 
     /// Draws the border of a rectangle, a unit wide, around its inside.
-    pub fn border(&mut self, Frame { x, y, w, h }: Frame, color: Color) {
-        self.fill(Frame { x: x - 1.0, y: y - 1.0, w: w + 2.0, h: 1.0 }, color);
-        self.fill(Frame { x: x - 1.0, y: y + h, w: w + 2.0, h: 1.0 }, color);
-        self.fill(Frame { x: x - 1.0, y: y - 1.0, w: 1.0, h: h + 2.0 }, color);
-        self.fill(Frame { x: x + w, y: y - 1.0, w: 1.0, h: h + 2.0 }, color);
+    pub fn border(&mut self, Rect { x, y, w, h }: Rect, color: Color) {
+        self.fill(Rect { x: x - 1.0, y: y - 1.0, w: w + 2.0, h: 1.0 }, color);
+        self.fill(Rect { x: x - 1.0, y: y + h, w: w + 2.0, h: 1.0 }, color);
+        self.fill(Rect { x: x - 1.0, y: y - 1.0, w: 1.0, h: h + 2.0 }, color);
+        self.fill(Rect { x: x + w, y: y - 1.0, w: 1.0, h: h + 2.0 }, color);
     }
 
     /// Draws a line through the points, `width` wide.
@@ -151,7 +151,7 @@ impl Canvas {
     }
 
     /// Draws pixels over a frame; the title says what they show, where a format can say it.
-    pub fn image(&mut self, frame: Frame, pixels: Pixels, title: &str) {
+    pub fn image(&mut self, frame: Rect, pixels: Pixels, title: &str) {
         self.marks.push(Mark::Image { frame, pixels, title: title.to_owned() });
     }
 

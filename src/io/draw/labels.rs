@@ -1,6 +1,6 @@
 //! Names beside lines, where they cover nothing.
 
-use crate::io::draw::canvas::{Align, Canvas, Color, Frame};
+use crate::io::draw::canvas::{Align, Canvas, Color, Rect};
 use crate::io::draw::panel::TICK_SIZE;
 
 /// A line and its name.
@@ -15,14 +15,14 @@ pub(crate) struct Named<'a> {
 /// wins a tie.
 pub(crate) fn write(
     canvas: &mut Canvas,
-    frame: Frame,
+    frame: Rect,
     lines: &[Named],
     others: &[[(f32, f32); 2]],
     best: f32,
 ) {
     let dense: Vec<_> = lines.iter().map(|line| resampled(&line.points)).collect();
     let others: Vec<_> = others.iter().flat_map(|line| resampled(line)).collect();
-    let mut taken: Vec<Frame> = Vec::new();
+    let mut taken: Vec<Rect> = Vec::new();
     for (line, points) in lines.iter().zip(&dense).filter(|(_, points)| !points.is_empty()) {
         let (w, h) = (canvas.text_width(line.name, TICK_SIZE), TICK_SIZE);
         let places = points.iter().enumerate().step_by(4).flat_map(|(k, &(x, y))| {
@@ -41,11 +41,11 @@ pub(crate) fn write(
                     (right, below),
                     (left, below),
                 ];
-                let place = move |(dx, dy)| (off_best + 0.1 * gap, Frame { x: x + dx, y: y + dy, w, h });
+                let place = move |(dx, dy)| (off_best + 0.1 * gap, Rect { x: x + dx, y: y + dy, w, h });
                 around.into_iter().map(place)
             })
         });
-        let cost = |(far, place): &(f32, Frame)| {
+        let cost = |(far, place): &(f32, Rect)| {
             let wide = grown(*place, 3.0);
             let covered =
                 dense.iter().flatten().chain(&others).filter(|&&point| contains(wide, point)).count();
@@ -78,14 +78,14 @@ fn resampled(points: &[(f32, f32)]) -> Vec<(f32, f32)> {
     dense
 }
 
-fn grown(Frame { x, y, w, h }: Frame, by: f32) -> Frame {
-    Frame { x: x - by, y: y - by, w: w + 2.0 * by, h: h + 2.0 * by }
+fn grown(Rect { x, y, w, h }: Rect, by: f32) -> Rect {
+    Rect { x: x - by, y: y - by, w: w + 2.0 * by, h: h + 2.0 * by }
 }
 
-fn contains(frame: Frame, (x, y): (f32, f32)) -> bool {
+fn contains(frame: Rect, (x, y): (f32, f32)) -> bool {
     (frame.x..=frame.x + frame.w).contains(&x) && (frame.y..=frame.y + frame.h).contains(&y)
 }
 
-fn meet(a: Frame, b: Frame) -> bool {
+fn meet(a: Rect, b: Rect) -> bool {
     a.x < b.x + b.w && b.x < a.x + a.w && a.y < b.y + b.h && b.y < a.y + a.h
 }

@@ -1,9 +1,9 @@
 //! The pieces of a preview: a heat map of a slice, its ticks, labels and colour bar.
 
-use crate::io::draw::canvas::{Align, BLACK, Canvas, Frame, GREY, PALE, Pixels};
+use crate::io::draw::canvas::{Align, BLACK, Canvas, GREY, PALE, Pixels, Rect};
 use crate::io::draw::colormap::viridis;
 use crate::io::draw::scale;
-use crate::io::draw::scale::Scale;
+use crate::io::draw::scale::PlotScale;
 use crate::table::Table;
 use crate::table::axis::Axis;
 
@@ -81,7 +81,7 @@ impl Slice<'_> {
 }
 
 /// Paints every sample's cell; where cells are finer than pixels, the largest value shows.
-pub(crate) fn heat_map(canvas: &mut Canvas, frame: Frame, slice: &Slice, scale: &Scale) {
+pub(crate) fn heat_map(canvas: &mut Canvas, frame: Rect, slice: &Slice, scale: &PlotScale) {
     let (width, height) = (frame.w as usize, frame.h as usize);
     let columns = cells(&slice.table.axes[slice.x], width);
     let rows = cells(&slice.table.axes[slice.y], height);
@@ -99,7 +99,7 @@ pub(crate) fn heat_map(canvas: &mut Canvas, frame: Frame, slice: &Slice, scale: 
 /// The first and last sample whose cells each of `pixels` pixels covers. Cells meet half-way between
 /// samples and end with the axis's range, so on nodes the outer ones are half cells.
 fn cells(axis: &Axis, pixels: usize) -> Vec<(usize, usize)> {
-    let scale = Scale::of_axis(axis);
+    let scale = PlotScale::of_axis(axis);
     let middle = |pair: &[f64]| scale.at(0.5 * (pair[0] + pair[1]));
     let edges: Vec<_> = axis.values().windows(2).map(middle).collect();
     let cell = |u: f64| edges.partition_point(|&edge| edge <= u);
@@ -107,36 +107,36 @@ fn cells(axis: &Axis, pixels: usize) -> Vec<(usize, usize)> {
     (0..pixels).map(|p| (cell((p as f64 + 0.01) / n), cell((p as f64 + 0.99) / n))).collect()
 }
 
-pub(crate) fn ticks_below(canvas: &mut Canvas, frame: Frame, scale: &Scale, grid: bool) {
+pub(crate) fn ticks_below(canvas: &mut Canvas, frame: Rect, scale: &PlotScale, grid: bool) {
     let base = frame.y + frame.h;
     for (value, label) in scale.ticks((frame.w / 64.0) as usize) {
         let x = frame.x + (frame.w - 1.0) * scale.at(value) as f32;
         if grid {
-            canvas.fill(Frame { x, y: frame.y, w: 1.0, h: frame.h }, PALE);
+            canvas.fill(Rect { x, y: frame.y, w: 1.0, h: frame.h }, PALE);
         }
-        canvas.fill(Frame { x, y: base, w: 1.0, h: 6.0 }, GREY);
+        canvas.fill(Rect { x, y: base, w: 1.0, h: 6.0 }, GREY);
         canvas.text(&label, (x, base + 16.0), TICK_SIZE, Align::Center, BLACK);
     }
 }
 
-pub(crate) fn ticks_left(canvas: &mut Canvas, frame: Frame, scale: &Scale, grid: bool) {
+pub(crate) fn ticks_left(canvas: &mut Canvas, frame: Rect, scale: &PlotScale, grid: bool) {
     for (value, label) in scale.ticks((frame.h / 40.0) as usize) {
         let y = frame.y + (frame.h - 1.0) * (1.0 - scale.at(value) as f32);
         if grid {
-            canvas.fill(Frame { x: frame.x, y, w: frame.w, h: 1.0 }, PALE);
+            canvas.fill(Rect { x: frame.x, y, w: frame.w, h: 1.0 }, PALE);
         }
-        canvas.fill(Frame { x: frame.x - 6.0, y, w: 6.0, h: 1.0 }, GREY);
+        canvas.fill(Rect { x: frame.x - 6.0, y, w: 6.0, h: 1.0 }, GREY);
         canvas.text(&label, (frame.x - 10.0, y), TICK_SIZE, Align::Right, BLACK);
     }
 }
 
-pub(crate) fn axis_labels(canvas: &mut Canvas, frame: Frame, below: &str, left: &str) {
+pub(crate) fn axis_labels(canvas: &mut Canvas, frame: Rect, below: &str, left: &str) {
     let (x, y) = (frame.x + frame.w / 2.0, frame.y + frame.h / 2.0);
     canvas.text(below, (x, frame.y + frame.h + 40.0), LABEL_SIZE, Align::Center, BLACK);
     canvas.text(left, (frame.x - LEFT + 16.0, y), LABEL_SIZE, Align::Turned, BLACK);
 }
 
-pub(crate) fn color_bar(canvas: &mut Canvas, frame: Frame, scale: &Scale, label: &str) {
+pub(crate) fn color_bar(canvas: &mut Canvas, frame: Rect, scale: &PlotScale, label: &str) {
     let rows = frame.h as usize;
     let color = |row| viridis(1.0 - (row as f64 + 0.5) / rows as f64);
     canvas.image(frame, Pixels { width: 1, colors: (0..rows).map(color).collect() }, label);
@@ -144,7 +144,7 @@ pub(crate) fn color_bar(canvas: &mut Canvas, frame: Frame, scale: &Scale, label:
     let right = frame.x + frame.w;
     for (value, label) in scale.ticks((frame.h / 44.0) as usize) {
         let y = frame.y + (frame.h - 1.0) * (1.0 - scale.at(value) as f32);
-        canvas.fill(Frame { x: right, y, w: 6.0, h: 1.0 }, GREY);
+        canvas.fill(Rect { x: right, y, w: 6.0, h: 1.0 }, GREY);
         canvas.text(&label, (right + 10.0, y), TICK_SIZE, Align::Left, BLACK);
     }
     let label = canvas.fit(label, LABEL_SIZE, frame.h);

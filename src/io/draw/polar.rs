@@ -1,10 +1,10 @@
 //! Lobes in the plane of incidence: f cos θe as a radius over θe.
 
-use crate::io::draw::canvas::{Align, BLACK, Canvas, Color, Frame, GREY, PALE};
+use crate::io::draw::canvas::{Align, BLACK, Canvas, Color, GREY, PALE, Rect};
 use crate::io::draw::labels;
 use crate::io::draw::labels::Named;
 use crate::io::draw::panel::{LABEL_SIZE, TICK_SIZE};
-use crate::io::draw::scale::{Kind, Scale, power_of_ten};
+use crate::io::draw::scale::{PlotScale, ScaleKind, power_of_ten};
 use std::f32::consts::PI;
 
 /// A half disc: its middle and its radius.
@@ -19,18 +19,18 @@ pub(crate) struct Dial {
 pub(crate) type Lobe<'a> = (&'a str, Color, Vec<(f64, f64)>);
 
 /// The radius of values: from 0, or logarithmic.
-pub(crate) fn radial(peaks: &[f64], log: bool) -> Scale {
+pub(crate) fn radial(peaks: &[f64], log: bool) -> PlotScale {
     let max = peaks.iter().copied().fold(0.0, f64::max);
     if max <= 0.0 {
-        return Scale { range: [0.0, 1.0], kind: Kind::Linear };
+        return PlotScale { range: [0.0, 1.0], kind: ScaleKind::Linear };
     }
     if !log {
-        return Scale { range: [0.0, 1.06 * max], kind: Kind::Linear };
+        return PlotScale { range: [0.0, 1.06 * max], kind: ScaleKind::Linear };
     }
     // The lowest peak has a decade or two below it to show its shape.
     let least = peaks.iter().copied().filter(|&peak| peak > 0.0).fold(max, f64::min);
     let low = least.max(1e-14 * max).log10() - 1.0;
-    Scale { range: [10f64.powf(low.floor()), 1.5 * max], kind: Kind::Log }
+    PlotScale { range: [10f64.powf(low.floor()), 1.5 * max], kind: ScaleKind::Log }
 }
 
 impl Dial {
@@ -41,7 +41,7 @@ impl Dial {
     }
 
     /// Rings, angles, ωi and the mirror direction of θi.
-    pub fn draw(&self, canvas: &mut Canvas, scale: &Scale, theta_i: f64, label: &str) {
+    pub fn draw(&self, canvas: &mut Canvas, scale: &PlotScale, theta_i: f64, label: &str) {
         let Self { x, base, radius } = *self;
         for degrees in (-90i32..=90).step_by(30) {
             let theta = f64::from(degrees).to_radians();
@@ -64,7 +64,7 @@ impl Dial {
             }
             // Where tick labels would touch, one is left away.
             if radius * r - last > canvas.text_width(&text, TICK_SIZE) + 8.0 {
-                canvas.fill(Frame { x: x + radius * r, y: base, w: 1.0, h: 5.0 }, GREY);
+                canvas.fill(Rect { x: x + radius * r, y: base, w: 1.0, h: 5.0 }, GREY);
                 canvas.text(&text, (x + radius * r, base + 15.0), TICK_SIZE, Align::Center, BLACK);
                 last = radius * r;
             }
@@ -102,7 +102,7 @@ impl Dial {
     }
 
     /// The lobes, with their names if there are several.
-    pub fn lobes(&self, canvas: &mut Canvas, scale: &Scale, theta_i: f64, lobes: &[Lobe]) {
+    pub fn lobes(&self, canvas: &mut Canvas, scale: &PlotScale, theta_i: f64, lobes: &[Lobe]) {
         let mut lines = Vec::new();
         for (name, color, lobe) in lobes {
             let points = lobe.iter().filter(|(_, value)| value.is_finite());
@@ -117,7 +117,7 @@ impl Dial {
         }
         if lines.len() > 1 {
             let Self { x, base, radius } = *self;
-            let frame = Frame { x: x - radius, y: base - radius, w: 2.0 * radius, h: radius - 4.0 };
+            let frame = Rect { x: x - radius, y: base - radius, w: 2.0 * radius, h: radius - 4.0 };
             let [wi, mirror] = [-theta_i, theta_i].map(|theta| self.at(theta, 1.0));
             // The rays, and the name of the mirror direction beyond the rim.
             let name = [(mirror.0, mirror.1 - 8.0), (mirror.0 + 50.0, mirror.1 - 8.0)];
@@ -131,7 +131,7 @@ impl Dial {
             let y = self.base - 0.72 * self.radius + 20.0 * (k as f32 - 0.5 * said.len() as f32);
             let width = canvas.text_width(text, TICK_SIZE);
             // Rings and rays stay behind it.
-            let paper = Frame { x: self.x - 0.5 * width - 4.0, y: y - 10.0, w: width + 8.0, h: 20.0 };
+            let paper = Rect { x: self.x - 0.5 * width - 4.0, y: y - 10.0, w: width + 8.0, h: 20.0 };
             canvas.fill(paper, [255; 3]);
             canvas.text(text, (self.x, y), TICK_SIZE, Align::Center, *color);
         }
@@ -151,9 +151,9 @@ pub(crate) fn thinned(points: &[(f32, f32)]) -> Vec<(f32, f32)> {
 }
 
 /// "f cos θe [sr⁻¹], logarithmic from 10⁻³".
-pub(crate) fn axis_label(scale: &Scale) -> String {
+pub(crate) fn axis_label(scale: &PlotScale) -> String {
     match scale.kind {
-        Kind::Log => {
+        ScaleKind::Log => {
             let from = power_of_ten(scale.range[0].log10().round() as i32);
             format!("f cos θe [sr⁻¹], logarithmic from {from}")
         }

@@ -1,7 +1,7 @@
 //! A drawing as a PNG file.
 
 use crate::base::error::{Error, Result};
-use crate::io::draw::canvas::{Align, BASELINE, Canvas, Color, Fonts, Frame, Mark, Pixels};
+use crate::io::draw::canvas::{Align, BASELINE, Canvas, Color, Fonts, Mark, Pixels, Rect};
 use ab_glyph::{Font, PxScale, ScaleFont, point};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
@@ -39,8 +39,8 @@ impl Raster {
         let s = self.scale;
         let scaled = |&(x, y): &(f32, f32)| (x * s, y * s);
         match mark {
-            &Mark::Fill(Frame { x, y, w, h }, color) => {
-                self.fill(Frame { x: x * s, y: y * s, w: w * s, h: h * s }, color);
+            &Mark::Fill(Rect { x, y, w, h }, color) => {
+                self.fill(Rect { x: x * s, y: y * s, w: w * s, h: h * s }, color);
             }
             &Mark::Line { ref points, width, color } => {
                 self.line(&points.iter().map(scaled).collect::<Vec<_>>(), 0.5 * width * s, color);
@@ -68,7 +68,7 @@ impl Raster {
         }
     }
 
-    fn fill(&mut self, Frame { x, y, w, h }: Frame, color: Color) {
+    fn fill(&mut self, Rect { x, y, w, h }: Rect, color: Color) {
         for row in y.round() as i32..(y + h).round() as i32 {
             for column in x.round() as i32..(x + w).round() as i32 {
                 self.mix(column, row, color, 1.0);
@@ -77,7 +77,7 @@ impl Raster {
     }
 
     /// Each pixel takes the nearest of the image's.
-    fn image(&mut self, Frame { x, y, w, h }: Frame, pixels: &Pixels) {
+    fn image(&mut self, Rect { x, y, w, h }: Rect, pixels: &Pixels) {
         let s = self.scale;
         let [left, top] = [x, y].map(|x| (x * s).round() as i32);
         let [columns, rows] = [w, h].map(|w| (w * s).round() as usize);

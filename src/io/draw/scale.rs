@@ -4,14 +4,14 @@ use crate::table::axis::{Axis, Variable};
 
 /// How values spread over a picture's axis or a colour bar.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Scale {
+pub(crate) struct PlotScale {
     /// The values at 0 and 1.
     pub range: [f64; 2],
-    pub kind: Kind,
+    pub kind: ScaleKind,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum ScaleKind {
     Linear,
     /// Linear in radians, with ticks in degrees.
     Degrees,
@@ -21,10 +21,10 @@ pub(crate) enum Kind {
 /// Decades that a logarithmic scale shows below the maximum.
 pub(crate) const DECADES: i32 = 7;
 
-impl Scale {
+impl PlotScale {
     /// The scale of an axis of a table: its range, or some room around a single point.
     pub fn of_axis(axis: &Axis) -> Self {
-        let kind = if axis.variable().unit() == "rad" { Kind::Degrees } else { Kind::Linear };
+        let kind = if axis.variable().unit() == "rad" { ScaleKind::Degrees } else { ScaleKind::Linear };
         let [a, b] = axis.range();
         Self { range: if a < b { [a, b] } else { [a - 0.5, b + 0.5] }, kind }
     }
@@ -35,12 +35,12 @@ impl Scale {
         let max = finite.clone().fold(f64::NEG_INFINITY, f64::max);
         let min = finite.clone().fold(f64::INFINITY, f64::min);
         if min > max {
-            return Self { range: [0.0, 1.0], kind: Kind::Linear }; // nothing to show
+            return Self { range: [0.0, 1.0], kind: ScaleKind::Linear }; // nothing to show
         }
         let least = finite.filter(|&v| v > 0.0).fold(max, f64::min);
         if log && min >= 0.0 && max > 10.0 * least {
             let range = [least.max(max * 10f64.powi(-DECADES)), max];
-            return Self { range, kind: Kind::Log };
+            return Self { range, kind: ScaleKind::Log };
         }
         // Rounding noise on a constant is not a picture.
         let spread = max - min;
@@ -49,13 +49,13 @@ impl Scale {
             size if spread < 1e-5 * size => [min - 0.5 * size, max + 0.5 * size],
             _ => [min, max],
         };
-        Self { range, kind: Kind::Linear }
+        Self { range, kind: ScaleKind::Linear }
     }
 
     /// A scale widened by a little, so that lines do not lie on the border.
     pub fn with_margin(self) -> Self {
         let [a, b] = self.range;
-        if self.kind == Kind::Log {
+        if self.kind == ScaleKind::Log {
             return Self { range: [a / 1.3, b * 1.3], ..self };
         }
         let margin = 0.05 * (b - a);
@@ -68,8 +68,8 @@ impl Scale {
     pub fn at(&self, value: f64) -> f64 {
         let [a, b] = self.range;
         match self.kind {
-            Kind::Log => (value.max(f64::MIN_POSITIVE).log10() - a.log10()) / (b.log10() - a.log10()),
-            Kind::Linear | Kind::Degrees => (value - a) / (b - a),
+            ScaleKind::Log => (value.max(f64::MIN_POSITIVE).log10() - a.log10()) / (b.log10() - a.log10()),
+            ScaleKind::Linear | ScaleKind::Degrees => (value - a) / (b - a),
         }
     }
 
@@ -78,18 +78,18 @@ impl Scale {
         let [a, b] = self.range;
         let most = most.max(2) as f64;
         match self.kind {
-            Kind::Linear => {
+            ScaleKind::Linear => {
                 let step = nice_step((b - a) / most);
                 multiples(a, b, step).map(|value| (value, number(value, step))).collect()
             }
-            Kind::Degrees => {
+            ScaleKind::Degrees => {
                 let (a, b) = (a.to_degrees(), b.to_degrees());
                 let steps = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0];
                 let wide = steps.into_iter().find(|step| (b - a) / step <= most).unwrap_or(180.0);
                 let step = if b - a < 2.0 { nice_step((b - a) / most) } else { wide };
                 multiples(a, b, step).map(|value| (value.to_radians(), number(value, step))).collect()
             }
-            Kind::Log => {
+            ScaleKind::Log => {
                 let (low, high) = ((a.log10() - 1e-6).ceil() as i32, (b.log10() + 1e-6).floor() as i32);
                 if high - low < 2 {
                     let within = |value: &f64| (a..=b).contains(value);

@@ -1,7 +1,7 @@
 //! A drawing as an SVG file: text stays text, and images are PNG files within it.
 
 use crate::base::error::Result;
-use crate::io::draw::canvas::{Align, BASELINE, Canvas, Color, EM, Frame, Mark};
+use crate::io::draw::canvas::{Align, BASELINE, Canvas, Color, EM, Mark, Rect};
 use crate::io::draw::raster;
 use std::fmt::Write;
 
@@ -25,7 +25,7 @@ pub(crate) fn encode(canvas: &Canvas) -> Result<String> {
 
 fn element(mark: &Mark) -> Result<String> {
     Ok(match mark {
-        &Mark::Fill(Frame { x, y, w, h }, color) => format!(
+        &Mark::Fill(Rect { x, y, w, h }, color) => format!(
             "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"/>",
             short(x),
             short(y),
@@ -49,7 +49,7 @@ fn element(mark: &Mark) -> Result<String> {
             short(radius),
             hex(color)
         ),
-        Mark::Image { frame: Frame { x, y, w, h }, pixels, title } => format!(
+        Mark::Image { frame: Rect { x, y, w, h }, pixels, title } => format!(
             "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" \
              href=\"data:image/png;base64,{}\"><title>{}</title></image>",
             short(*x),

@@ -27,13 +27,13 @@ fn encode(table: &Table, _: &Provenance) -> Result<Vec<u8>> {
 fn begin_rows(table: &Table, _: &Provenance, file: &mut Vec<u8>) -> Result<Box<dyn RowWriter>> {
     let head = head(&shape(table));
     file.extend(head.map_err(|error| Error::Internal(format!("table {}: NPY: {error}", table.name)))?);
-    Ok(Box::new(Rows))
+    Ok(Box::new(NpyRows))
 }
 
 /// The values of an array in f32, one after the other.
-struct Rows;
+struct NpyRows;
 
-impl RowWriter for Rows {
+impl RowWriter for NpyRows {
     fn append(&mut self, texels: &[f32], file: &mut Vec<u8>) {
         file.extend(texels.iter().flat_map(|value| value.to_le_bytes()));
     }

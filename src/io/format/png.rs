@@ -2,13 +2,13 @@
 
 use crate::base::error::Result;
 use crate::io::Provenance;
-use crate::io::draw::canvas::{Align, BLACK, Canvas, Color, Frame, GREY};
+use crate::io::draw::canvas::{Align, BLACK, Canvas, Color, Rect, GREY};
 use crate::io::draw::panel::{
     BAR, BELOW, LABEL_SIZE, LEFT, Shown, Slice, TICK_SIZE, axis_labels, color_bar, heat_map, ticks_below,
     ticks_left,
 };
 use crate::io::draw::scale;
-use crate::io::draw::scale::{Kind, Scale};
+use crate::io::draw::scale::{ScaleKind, PlotScale};
 use crate::io::format::{Format, Streamed};
 use crate::table::axis::Axis;
 use crate::table::{ErrorKind, Table};
@@ -53,13 +53,13 @@ fn numbers(table: &Table) -> Result<Vec<u8>> {
 
 /// A table over one axis: a line for each channel.
 fn lines(table: &Table, x: usize) -> Result<Vec<u8>> {
-    let frame = Frame { x: LEFT + 18.0, y: HEADER + 8.0, w: 860.0, h: 460.0 };
+    let frame = Rect { x: LEFT + 18.0, y: HEADER + 8.0, w: 860.0, h: 460.0 };
     let mut canvas = Canvas::new(1100, (frame.y + frame.h + BELOW) as usize)?;
     let axis = &table.axes[x];
-    let scale_x = Scale::of_axis(axis);
+    let scale_x = PlotScale::of_axis(axis);
     let values = table.values.iter();
-    let scale_y = Scale::of_values(values, is_density(table)).with_margin();
-    let notes = if scale_y.kind == Kind::Log { vec!["logarithmic".to_owned()] } else { vec![] };
+    let scale_y = PlotScale::of_values(values, is_density(table)).with_margin();
+    let notes = if scale_y.kind == ScaleKind::Log { vec!["logarithmic".to_owned()] } else { vec![] };
     header(&mut canvas, table, &notes);
 
     ticks_below(&mut canvas, frame, &scale_x, true);
@@ -102,19 +102,19 @@ fn maps(table: &Table, x: usize, y: usize) -> Result<Vec<u8>> {
     header(&mut canvas, table, &notes);
     for c in 0..shown {
         let (column, row) = ((c % columns) as f32, (c / columns) as f32);
-        let frame = Frame { x: LEFT + cell_w * column, y: HEADER + 30.0 + cell_h * row, w: side, h: side };
+        let frame = Rect { x: LEFT + cell_w * column, y: HEADER + 30.0 + cell_h * row, w: side, h: side };
         let slice = Slice { table, at: vec![0; table.axes.len()], x, y, shown: Shown::Channel(c) };
-        let scale = Scale::of_values(slice.values(), is_density(table));
+        let scale = PlotScale::of_values(slice.values(), is_density(table));
         heat_map(&mut canvas, frame, &slice, &scale);
-        ticks_below(&mut canvas, frame, &Scale::of_axis(&table.axes[x]), false);
-        ticks_left(&mut canvas, frame, &Scale::of_axis(&table.axes[y]), false);
+        ticks_below(&mut canvas, frame, &PlotScale::of_axis(&table.axes[x]), false);
+        ticks_left(&mut canvas, frame, &PlotScale::of_axis(&table.axes[y]), false);
         let [label_x, label_y] = [x, y].map(|axis| scale::label(table.axes[axis].variable()));
         axis_labels(&mut canvas, frame, &label_x, &label_y);
         let name = canvas.fit(&table.channels[c], LABEL_SIZE, side);
         canvas.text(&name, (frame.x + side / 2.0, frame.y - 16.0), LABEL_SIZE, Align::Center, BLACK);
         color_bar(
             &mut canvas,
-            Frame { x: frame.x + side + 14.0, w: 16.0, ..frame },
+            Rect { x: frame.x + side + 14.0, w: 16.0, ..frame },
             &scale,
             &quantity(table),
         );
@@ -160,8 +160,8 @@ fn multiples(table: &Table, slow: &[usize], x: usize, y: usize) -> Result<Vec<u8
         panels = panels.iter().flat_map(|panel| indices.iter().map(move |&i| panel.moved(k, i))).collect();
     }
 
-    let scale = Scale::of_values(panels.iter().flat_map(Slice::values), is_density(table));
-    if scale.kind == Kind::Log {
+    let scale = PlotScale::of_values(panels.iter().flat_map(Slice::values), is_density(table));
+    if scale.kind == ScaleKind::Log {
         notes.push(format!("logarithmic colours over at most {} decades", scale::DECADES));
     }
     let (w, h, gap) = (368.0, 236.0, 24.0);
@@ -173,21 +173,21 @@ fn multiples(table: &Table, slow: &[usize], x: usize, y: usize) -> Result<Vec<u8
     for (k, panel) in panels.iter().enumerate() {
         let (column, row) = (k % columns, k / columns);
         let corner = (LEFT + (w + gap) * column as f32, HEADER + 30.0 + (h + 34.0) * row as f32);
-        let frame = Frame { x: corner.0, y: corner.1, w, h };
+        let frame = Rect { x: corner.0, y: corner.1, w, h };
         heat_map(&mut canvas, frame, panel, &scale);
         let heading = canvas.fit(&panel.heading(spread), TICK_SIZE, w);
         canvas.text(&heading, (frame.x + w / 2.0, frame.y - 15.0), TICK_SIZE, Align::Center, BLACK);
         let [label_x, label_y] = [x, y].map(|axis| scale::label(table.axes[axis].variable()));
         if column == 0 {
-            ticks_left(&mut canvas, frame, &Scale::of_axis(&table.axes[y]), false);
+            ticks_left(&mut canvas, frame, &PlotScale::of_axis(&table.axes[y]), false);
             axis_labels(&mut canvas, frame, "", &label_y);
         }
         if k + columns >= panels.len() {
-            ticks_below(&mut canvas, frame, &Scale::of_axis(&table.axes[x]), false);
+            ticks_below(&mut canvas, frame, &PlotScale::of_axis(&table.axes[x]), false);
             axis_labels(&mut canvas, frame, &label_x, "");
         }
     }
-    let tall = Frame { x: right - gap + 14.0, y: HEADER + 30.0, w: 16.0, h: bottom - HEADER - 34.0 };
+    let tall = Rect { x: right - gap + 14.0, y: HEADER + 30.0, w: 16.0, h: bottom - HEADER - 34.0 };
     color_bar(&mut canvas, tall, &scale, &quantity(table));
     canvas.to_png(1)
 }

@@ -135,11 +135,11 @@ impl Target {
     }
 
     /// The target's channels as sums of the table's.
-    fn channel_terms(&self, table: &Table) -> Result<Vec<Sum>> {
+    fn channel_terms(&self, table: &Table) -> Result<Vec<ChannelSum>> {
         let Some(wanted) = self.channels else {
             let copies = table.channels.iter().enumerate();
             return Ok(copies
-                .map(|(c, name)| Sum { name: name.clone(), terms: vec![(c, 1.0)], constant: 0.0 })
+                .map(|(c, name)| ChannelSum { name: name.clone(), terms: vec![(c, 1.0)], constant: 0.0 })
                 .collect());
         };
         let find = |&(name, factor): &(&str, f64)| {
@@ -154,20 +154,20 @@ impl Target {
         };
         let sums = wanted.iter().map(|channel| {
             let terms = channel.terms.iter().map(find).collect::<Result<_>>()?;
-            Ok(Sum { name: channel.name.into(), terms, constant: channel.constant })
+            Ok(ChannelSum { name: channel.name.into(), terms, constant: channel.constant })
         });
         sums.collect()
     }
 }
 
 /// A channel as a sum of a table's channels, by their numbers.
-struct Sum {
+struct ChannelSum {
     name: String,
     terms: Vec<(usize, f64)>,
     constant: f64,
 }
 
-impl Sum {
+impl ChannelSum {
     fn value(&self, channel: impl Fn(usize) -> f64) -> f64 {
         match self.copied() {
             Some(c) => channel(c),
@@ -185,7 +185,7 @@ impl Sum {
 }
 
 /// The values in the order of `axes`, combined to `channels`.
-fn values(table: &Table, axes: &[(usize, bool)], channels: &[Sum]) -> Values {
+fn values(table: &Table, axes: &[(usize, bool)], channels: &[ChannelSum]) -> Values {
     let shape: Vec<_> = axes.iter().map(|&(k, _)| table.axes[k].len()).collect();
     let mut values = Vec::with_capacity(table.texels() * channels.len());
     for texel in 0..table.texels() {
@@ -203,12 +203,12 @@ fn values(table: &Table, axes: &[(usize, bool)], channels: &[Sum]) -> Values {
 }
 
 /// Whether each value is one of the table's, so that nothing is rounded again.
-fn channels_are_copies(channels: &[Sum]) -> bool {
+fn channels_are_copies(channels: &[ChannelSum]) -> bool {
     channels.iter().all(|channel| channel.copied().is_some())
 }
 
 /// Whether they are the table's channels, each once, in some order.
-fn channels_are_a_permutation(channels: &[Sum], table: &Table) -> bool {
+fn channels_are_a_permutation(channels: &[ChannelSum], table: &Table) -> bool {
     let count = table.channels.len();
     channels.len() == count && (0..count).all(|c| channels.iter().any(|channel| channel.copied() == Some(c)))
 }
@@ -219,7 +219,7 @@ fn oriented(axis: &Axis, flipped: bool) -> Axis {
 }
 
 /// The error of a table whose channels are in another order.
-fn permuted(error: &TableError, channels: &[Sum]) -> TableError {
+fn permuted(error: &TableError, channels: &[ChannelSum]) -> TableError {
     let mut error = error.clone();
     let moved = |old: f64| channels.iter().position(|channel| channel.copied() == Some(old as usize));
     if let Some(channel) = error.worst.get_mut("channel")
@@ -232,8 +232,8 @@ fn permuted(error: &TableError, channels: &[Sum]) -> TableError {
 
 /// What bounds the error of sums of channels that are rounded again: |Σ f x − Σ f x̃| ≤ Σ |f| · max |x − x̃|, and the
 /// rounding. Relative errors of sums have no such bound, as their terms may cancel.
-fn bounded(error: &TableError, channels: &[Sum], storage: Storage) -> TableError {
-    let factors = |channel: &Sum| channel.terms.iter().map(|(_, factor)| factor.abs()).sum::<f64>();
+fn bounded(error: &TableError, channels: &[ChannelSum], storage: Storage) -> TableError {
+    let factors = |channel: &ChannelSum| channel.terms.iter().map(|(_, factor)| factor.abs()).sum::<f64>();
     let largest = channels.iter().map(factors).fold(0.0, f64::max);
     let known = error.estimate.into_iter().chain(error.measured_max).reduce(f64::max);
     let bound = known.map(|known| largest * known + storage.rounding(error.kind));

@@ -46,7 +46,7 @@ pub struct Band {
     /// What `max` may be, if anything is promised.
     pub promise: Option<f64>,
     /// Where `max` is.
-    pub worst: Option<Worst>,
+    pub worst: Option<WorstInput>,
 }
 
 impl Band {
@@ -59,7 +59,7 @@ impl Band {
 
 /// The input of a largest error.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Worst {
+pub struct WorstInput {
     /// The α; of no meaning to a model without.
     pub alpha: f64,
     /// The directions.
@@ -76,7 +76,7 @@ pub struct Worst {
 }
 
 /// Errors as they come in.
-pub(super) struct Tally {
+pub(super) struct BandTally {
     relative: Histogram,
     ulp: Histogram,
     non_finite: u64,
@@ -84,10 +84,10 @@ pub(super) struct Tally {
     max_ulp: f64,
     reciprocity: f64,
     unequal: u64,
-    worst: Option<Worst>,
+    worst: Option<WorstInput>,
 }
 
-impl Tally {
+impl BandTally {
     pub fn new() -> Self {
         Self {
             relative: Histogram::new(),
@@ -219,9 +219,9 @@ pub(super) fn measure(
     alphas: &[f64],
     angles: &[Angles],
     advance: &dyn Fn(f64) -> Result<()>,
-) -> Result<Vec<Tally>> {
+) -> Result<Vec<BandTally>> {
     let (channels, all) = (subject.channels, angles.len());
-    let mut tallies: Vec<_> = alphas.iter().map(|_| Tally::new()).collect();
+    let mut tallies: Vec<_> = alphas.iter().map(|_| BandTally::new()).collect();
     let (mut there, mut back) = (Vec::new(), Vec::new());
     for angles in angles.chunks(CHUNK) {
         let exchanged: Vec<_> = angles.iter().map(exchanged).collect();
@@ -243,7 +243,8 @@ pub(super) fn measure(
                             "{} --theta-i {theta_i:?} --phi-i {phi_i:?} --theta-e {theta_e:?} --phi-e {phi_e:?}",
                             (subject.name)(channel, alpha)
                         );
-                        tally.worst = Some(Worst { alpha, angles: *angles, channel, value, reference, eval });
+                        tally.worst =
+                            Some(WorstInput { alpha, angles: *angles, channel, value, reference, eval });
                     }
                     tally.exchange(value, back[channel]);
                 }
@@ -265,7 +266,7 @@ mod tests {
     use super::*;
 
     /// A surface of f = 1, that is wrong where `fault` says so.
-    fn tally(fault: impl Fn(&Angles) -> f32) -> Tally {
+    fn tally(fault: impl Fn(&Angles) -> f32) -> BandTally {
         let angles = super::super::directions::everywhere(20_000);
         let mut subject = Subject {
             channels: 1,

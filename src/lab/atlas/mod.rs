@@ -20,7 +20,7 @@ pub(crate) mod picture;
 mod study;
 mod write;
 
-pub use band::{Band, Worst};
+pub use band::{Band, WorstInput};
 pub use map::Map;
 #[cfg(feature = "cli")]
 pub(crate) use study::STEPS;
@@ -35,7 +35,7 @@ use crate::base::precision::VALUE_F32;
 use crate::check::{reference_angles, reference_of_model, reference_parameters};
 use crate::model::Model;
 use crate::model::lobe::Lobe;
-use band::{Subject, Tally, measure};
+use band::{BandTally, Subject, measure};
 use gonio_reference::Setting;
 use serde::Serialize;
 
@@ -63,14 +63,14 @@ pub const RECIPROCITY: f64 = 1e-6;
 
 /// What its pages are of, and its files are called.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum PageKind {
     /// Models.
     Atlas,
     /// Published forms of the GGX term.
     Study,
 }
 
-impl Kind {
+impl PageKind {
     /// Its files' name, without the extension.
     pub fn name(self) -> &'static str {
         match self {
@@ -186,9 +186,16 @@ fn alphas() -> Vec<f64> {
 }
 
 /// Bands of each α and of each decade.
-fn page(subject: &str, source: &str, alphas: &[f64], tallies: Vec<Tally>, promised: Option<&Model>) -> Page {
-    let band =
-        |range: [f64; 2], tally: &Tally| tally.band(range, promised.map(|model| promise(model, range[0])));
+fn page(
+    subject: &str,
+    source: &str,
+    alphas: &[f64],
+    tallies: Vec<BandTally>,
+    promised: Option<&Model>,
+) -> Page {
+    let band = |range: [f64; 2], tally: &BandTally| {
+        tally.band(range, promised.map(|model| promise(model, range[0])))
+    };
     let each = alphas.iter().zip(&tallies).map(|(&alpha, tally)| band([alpha; 2], tally)).collect();
     let last = DECADES.len() - 2;
     let decade = |k: usize| {
@@ -196,7 +203,7 @@ fn page(subject: &str, source: &str, alphas: &[f64], tallies: Vec<Tally>, promis
         let inside = |alpha: f64| low <= alpha && (alpha < high || k == last);
         let tallies =
             alphas.iter().zip(&tallies).filter(|&(&alpha, _)| inside(alpha)).map(|(_, tally)| tally);
-        Tally::sum(tallies).map(|tally| band([low, high], &tally))
+        BandTally::sum(tallies).map(|tally| band([low, high], &tally))
     };
     let decades = (0..=last).filter_map(decade).collect();
     Page { subject: subject.into(), source: source.into(), decades, alphas: each, map: None }

@@ -2,10 +2,10 @@
 
 use crate::base::angles::Angles;
 use crate::base::error::Result;
-use crate::io::draw::canvas::{Align, BLACK, Canvas, Color, Frame, GREY, Pixels};
+use crate::io::draw::canvas::{Align, BLACK, Canvas, Color, GREY, Pixels, Rect};
 use crate::io::draw::colormap::viridis;
 use crate::io::draw::panel::{BELOW, LABEL_SIZE, LEFT, axis_labels, color_bar, ticks_below, ticks_left};
-use crate::io::draw::scale::{Kind, Scale, short};
+use crate::io::draw::scale::{PlotScale, ScaleKind, short};
 use crate::lab::atlas::{Band, DECADES, Map, Page};
 use std::f64::consts::FRAC_PI_2;
 
@@ -33,8 +33,8 @@ const TOP: f32 = 92.0;
 pub(crate) fn draw_page(page: &Page) -> Result<Vec<u8>> {
     let mut canvas = Canvas::new(1180, 590)?;
     let (w, h) = (430.0, 590.0 - TOP - BELOW - 10.0);
-    let left = Frame { x: LEFT + 10.0, y: TOP, w, h };
-    let right = Frame { x: left.x + w + 112.0, y: TOP, w: h, h };
+    let left = Rect { x: LEFT + 10.0, y: TOP, w, h };
+    let right = Rect { x: left.x + w + 112.0, y: TOP, w: h, h };
     let title = format!("{}: f32 on the device against f64", page.subject);
     canvas.text(&title, (30.0, 26.0), 22.0, Align::Left, BLACK);
     let worst = canvas.fit(&in_words(page), LABEL_SIZE, 1120.0);
@@ -75,27 +75,27 @@ fn in_words(page: &Page) -> String {
 
 type Line = (&'static str, Color, Vec<(f64, f64)>);
 
-fn by_alpha(canvas: &mut Canvas, frame: Frame, bands: &[Band]) {
-    let place = |band: &Band| band.alpha.map_or(1.0, |[low, _]| low);
-    let of = |value: fn(&Band) -> Option<f64>| -> Vec<_> {
-        bands.iter().filter_map(|band| Some((place(band), value(band)?))).collect()
+fn by_alpha(canvas: &mut Canvas, frame: Rect, bands: &[Band]) {
+    let alpha_of = |band: &Band| band.alpha.map_or(1.0, |[low, _]| low);
+    let points = |value: fn(&Band) -> Option<f64>| -> Vec<_> {
+        bands.iter().filter_map(|band| Some((alpha_of(band), value(band)?))).collect()
     };
     // A step has two points where it is.
     let mut promised: Vec<(f64, f64)> = Vec::new();
-    for (alpha, promise) in of(|band| band.promise) {
+    for (alpha, promise) in points(|band| band.promise) {
         promised.extend(promised.last().map(|&(_, before)| (alpha, before)));
         promised.push((alpha, promise));
     }
     let lines = [
         ("promise", PROMISE, promised),
-        ("largest", MAX, of(|band| Some(band.max))),
-        ("median", MEDIAN, of(|band| Some(band.median))),
+        ("largest", MAX, points(|band| Some(band.max))),
+        ("median", MEDIAN, points(|band| Some(band.median))),
     ];
-    let x = Scale { range: [DECADES[0], 1.0], kind: Kind::Log };
+    let x = PlotScale { range: [DECADES[0], 1.0], kind: ScaleKind::Log };
     plot(canvas, frame, &x, &lines, "α");
 }
 
-fn by_theta(canvas: &mut Canvas, frame: Frame, map: &Map, promise: Option<f64>) {
+fn by_theta(canvas: &mut Canvas, frame: Rect, map: &Map, promise: Option<f64>) {
     let rows = |rows: &[Vec<f64>], of: fn(&[f64]) -> f64| -> Vec<_> {
         map.thetas.iter().zip(rows).map(|(&theta, row)| (theta, of(row))).collect()
     };
@@ -110,13 +110,13 @@ fn by_theta(canvas: &mut Canvas, frame: Frame, map: &Map, promise: Option<f64>) 
         ("largest", MAX, rows(&map.errors, |row| row.iter().copied().fold(0.0, f64::max))),
         ("median", MEDIAN, rows(&map.medians, middle)),
     ];
-    plot(canvas, frame, &Scale { range: [0.0, FRAC_PI_2], kind: Kind::Degrees }, &lines, "θi [°]");
+    plot(canvas, frame, &PlotScale { range: [0.0, FRAC_PI_2], kind: ScaleKind::Degrees }, &lines, "θi [°]");
 }
 
 /// Lines of relative errors, with their names at their right ends, and half a unit in the last place.
-fn plot(canvas: &mut Canvas, frame: Frame, x: &Scale, lines: &[Line], below: &str) {
-    let most = lines.iter().flat_map(|(.., points)| points).map(|&(_, error)| error).fold(1e-5, f64::max);
-    let y = Scale { range: [5e-9, 2.0 * most], kind: Kind::Log };
+fn plot(canvas: &mut Canvas, frame: Rect, x: &PlotScale, lines: &[Line], below: &str) {
+    let largest = lines.iter().flat_map(|(.., points)| points).map(|&(_, error)| error).fold(1e-5, f64::max);
+    let y = PlotScale { range: [5e-9, 2.0 * largest], kind: ScaleKind::Log };
     let at = |(u, v): (f64, f64)| {
         let up = y.at(v).clamp(0.0, 1.0) as f32;
         (frame.x + frame.w * x.at(u) as f32, frame.y + frame.h * (1.0 - up))
@@ -127,7 +127,7 @@ fn plot(canvas: &mut Canvas, frame: Frame, x: &Scale, lines: &[Line], below: &st
     axis_labels(canvas, frame, below, "relative error");
     let half = at((x.range[0], HALF_ULP)).1;
     for k in (0..frame.w as usize).step_by(8) {
-        canvas.fill(Frame { x: frame.x + k as f32, y: half, w: 4.0, h: 1.0 }, GREY);
+        canvas.fill(Rect { x: frame.x + k as f32, y: half, w: 4.0, h: 1.0 }, GREY);
     }
     canvas.text("2⁻²⁴", (frame.x + 8.0, half - 11.0), LABEL_SIZE, Align::Left, GREY);
     let mut names = Vec::new();
@@ -146,9 +146,9 @@ fn plot(canvas: &mut Canvas, frame: Frame, x: &Scale, lines: &[Line], below: &st
     }
 }
 
-fn hemispheres(canvas: &mut Canvas, frame: Frame, map: &Map) {
+fn hemispheres(canvas: &mut Canvas, frame: Rect, map: &Map) {
     let max = map.errors.iter().flatten().copied().filter(|e| e.is_finite()).fold(0.0, f64::max);
-    let scale = Scale { range: [0.0, if max > 0.0 { 1e6 * max } else { 1.0 }], kind: Kind::Linear };
+    let scale = PlotScale { range: [0.0, if max > 0.0 { 1e6 * max } else { 1.0 }], kind: ScaleKind::Linear };
     let count = map.thetas.len();
     let cell = |u: f32| ((u * (count - 1) as f32).round() as usize).min(count - 1);
     let (width, height) = (frame.w as usize, frame.h as usize);
@@ -160,7 +160,7 @@ fn hemispheres(canvas: &mut Canvas, frame: Frame, map: &Map) {
     let pixels = Pixels { width, colors: (0..width * height).map(color).collect() };
     canvas.image(frame, pixels, "largest error over θi and θe");
     canvas.border(frame, GREY);
-    let degrees = Scale { range: [0.0, FRAC_PI_2], kind: Kind::Degrees };
+    let degrees = PlotScale { range: [0.0, FRAC_PI_2], kind: ScaleKind::Degrees };
     ticks_below(canvas, frame, &degrees, false);
     ticks_left(canvas, frame, &degrees, false);
     axis_labels(canvas, frame, "θi [°]", "θe [°]");
@@ -168,7 +168,7 @@ fn hemispheres(canvas: &mut Canvas, frame: Frame, map: &Map) {
         format!("largest error over δφ, at the worst α = {}", short(alpha))
     });
     canvas.text(&heading, (frame.x + frame.w / 2.0, frame.y - 16.0), LABEL_SIZE, Align::Center, BLACK);
-    let bar = Frame { x: frame.x + frame.w + 18.0, w: 16.0, ..frame };
+    let bar = Rect { x: frame.x + frame.w + 18.0, w: 16.0, ..frame };
     color_bar(canvas, bar, &scale, "relative error × 10⁶");
 }
 
@@ -189,10 +189,12 @@ pub(crate) fn draw_study(forms: &[Page]) -> Result<Vec<u8>> {
     canvas.text(said, (30.0, 54.0), LABEL_SIZE, Align::Left, GREY);
     let (w, h) = (365.0, 640.0 - TOP - BELOW - 10.0);
     let values: [Column; 2] = [("median", |band| band.median), ("largest", |band| band.max)];
-    let (x, y) =
-        (Scale { range: [DECADES[0], 1.0], kind: Kind::Log }, Scale { range: [1e-8, 10.0], kind: Kind::Log });
+    let (x, y) = (
+        PlotScale { range: [DECADES[0], 1.0], kind: ScaleKind::Log },
+        PlotScale { range: [1e-8, 10.0], kind: ScaleKind::Log },
+    );
     for (k, (name, value)) in values.into_iter().enumerate() {
-        let frame = Frame { x: LEFT + 10.0 + k as f32 * (w + 92.0), y: TOP, w, h };
+        let frame = Rect { x: LEFT + 10.0 + k as f32 * (w + 92.0), y: TOP, w, h };
         canvas.border(frame, GREY);
         ticks_below(&mut canvas, frame, &x, true);
         ticks_left(&mut canvas, frame, &y, true);

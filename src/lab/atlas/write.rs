@@ -3,7 +3,7 @@
 use crate::base::error::{Error, Result};
 use crate::io::write_together;
 use crate::lab::atlas::picture::{draw_page, draw_study};
-use crate::lab::atlas::{Band, Kind, Page};
+use crate::lab::atlas::{Band, Page, PageKind};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// When the folder cannot be written.
-pub fn write(dir: &Path, kind: Kind, pages: &[Page], device: &Value) -> Result<()> {
+pub fn write(dir: &Path, kind: PageKind, pages: &[Page], device: &Value) -> Result<()> {
     let name = kind.name();
     let json = serde_json::to_string_pretty(&to_json(kind, pages, device));
     let json = json.map_err(|e| Error::Internal(e.to_string()))? + "\n";
@@ -22,8 +22,8 @@ pub fn write(dir: &Path, kind: Kind, pages: &[Page], device: &Value) -> Result<(
         (format!("{name}.json"), json.into_bytes()),
     ];
     match kind {
-        Kind::Study => files.push((format!("{name}.png"), draw_study(pages)?)),
-        Kind::Atlas => {
+        PageKind::Study => files.push((format!("{name}.png"), draw_study(pages)?)),
+        PageKind::Atlas => {
             for page in pages {
                 files.push((format!("{name}_{}.png", page.subject), draw_page(page)?));
             }
@@ -33,7 +33,7 @@ pub fn write(dir: &Path, kind: Kind, pages: &[Page], device: &Value) -> Result<(
 }
 
 /// What the JSON file says. What is infinite is null in it.
-pub fn to_json(kind: Kind, pages: &[Page], device: &Value) -> Value {
+pub fn to_json(kind: PageKind, pages: &[Page], device: &Value) -> Value {
     json!({
         "schema": 1,
         "kind": kind.name(),

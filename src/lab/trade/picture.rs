@@ -1,9 +1,9 @@
 //! The picture of a trade-off: error against time, both logarithmic, one line a method.
 
 use crate::base::error::Result;
-use crate::io::draw::canvas::{Align, BLACK, Canvas, Color, Frame, GREY};
+use crate::io::draw::canvas::{Align, BLACK, Canvas, Color, GREY, Rect};
 use crate::io::draw::panel::{BELOW, LABEL_SIZE, LEFT, axis_labels, ticks_below, ticks_left};
-use crate::io::draw::scale::{Kind, Scale};
+use crate::io::draw::scale::{PlotScale, ScaleKind};
 use crate::lab::trade::{Point, Trade};
 
 /// Of different lightness too, so that they differ in print: Okabe & Ito 2008.
@@ -21,14 +21,14 @@ const FRONT: Color = [205; 3];
 /// The bytes of a PNG file.
 pub(crate) fn draw(trade: &Trade) -> Result<Vec<u8>> {
     let mut canvas = Canvas::new(1000, 720)?;
-    let frame = Frame { x: LEFT + 10.0, y: 84.0, w: 1000.0 - LEFT - 150.0, h: 720.0 - 84.0 - BELOW - 8.0 };
+    let frame = Rect { x: LEFT + 10.0, y: 84.0, w: 1000.0 - LEFT - 150.0, h: 720.0 - 84.0 - BELOW - 8.0 };
     let drawn = |p: &&Point| p.max_error.is_finite() && p.max_error > 0.0 && p.table_seconds > 0.0;
     let points: Vec<_> = trade.points.iter().filter(drawn).collect();
     let scale = |values: &[f64]| {
         let min = values.iter().copied().fold(f64::INFINITY, f64::min);
         let max = values.iter().copied().fold(0.0, f64::max);
         let range = if min < max { [min / 1.6, max * 1.6] } else { [1e-6, 1.0] };
-        Scale { range, kind: Kind::Log }
+        PlotScale { range, kind: ScaleKind::Log }
     };
     let time = scale(&points.iter().map(|p| 1e3 * p.table_seconds).collect::<Vec<_>>());
     let error = scale(&points.iter().map(|p| p.max_error).collect::<Vec<_>>());

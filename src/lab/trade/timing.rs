@@ -29,7 +29,7 @@ impl Timing {
 }
 
 /// A table that is ready to be run.
-enum Warm<'a> {
+enum ReadyTable<'a> {
     Device(gpu::WarmTable<'a>),
     Cpu { plan: &'a TablePlan, prepare: f64 },
 }
@@ -42,17 +42,17 @@ pub(super) fn time(
     in_budget: &dyn Fn() -> bool,
     go_on: &dyn Fn() -> Result<()>,
 ) -> Result<Timing> {
-    let warm = Warm::new(evaluator, plan, precision)?;
+    let warm = ReadyTable::new(evaluator, plan, precision)?;
     let mut runs = Vec::new();
     while one_more(&runs, in_budget()) {
         go_on()?;
         runs.push(warm.run()?);
     }
     let values = match &warm {
-        Warm::Device(warm) => warm.values()?,
-        Warm::Cpu { plan, .. } => Values::F64(cpu::evaluate(plan, &|_| Ok::<_, Error>(()))?),
+        ReadyTable::Device(warm) => warm.values()?,
+        ReadyTable::Cpu { plan, .. } => Values::F64(cpu::evaluate(plan, &|_| Ok::<_, Error>(()))?),
     };
-    let (Warm::Device(gpu::WarmTable { prepare, .. }) | Warm::Cpu { prepare, .. }) = warm;
+    let (ReadyTable::Device(gpu::WarmTable { prepare, .. }) | ReadyTable::Cpu { prepare, .. }) = warm;
     Ok(Timing { prepare, runs, values })
 }
 
@@ -63,7 +63,7 @@ pub(super) fn rounds(
     go_on: &dyn Fn() -> Result<()>,
 ) -> Result<[Vec<f64>; 2]> {
     const ROUNDS: usize = 7;
-    let warm = plans.map(|plan| Warm::new(evaluator, plan, Precision::F32));
+    let warm = plans.map(|plan| ReadyTable::new(evaluator, plan, Precision::F32));
     let [ours, theirs] = warm;
     let warm = [ours?, theirs?];
     let mut times = [Vec::new(), Vec::new()];
@@ -98,7 +98,7 @@ pub(super) fn median(sorted: &[f64]) -> f64 {
     }
 }
 
-impl<'a> Warm<'a> {
+impl<'a> ReadyTable<'a> {
     fn new(evaluator: &'a Evaluator, plan: &'a TablePlan, precision: Precision) -> Result<Self> {
         Ok(match evaluator {
             Evaluator::Device(device) => Self::Device(device.warm(plan, precision)?),

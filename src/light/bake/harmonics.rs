@@ -5,9 +5,9 @@ use crate::base::error::{Error, Result};
 use crate::base::timings::Timings;
 use crate::check::Check;
 use crate::light::Light;
-use crate::light::bake::{Order, Values, normals, timed};
+use crate::light::bake::{Order, RgbValues, normals, timed};
 use crate::light::harmonics;
-use crate::light::harmonics::{Coefficients, Factors, TRUNCATION};
+use crate::light::harmonics::{Coefficients, MapFactors, TRUNCATION};
 use crate::table::Table;
 use crate::table::axis::{Axis, Variable};
 use crate::table::quantity::{Quantity, SH, SH_IRRADIANCE};
@@ -32,7 +32,7 @@ impl Order<'_> {
         let mut seconds = 0.0;
         let (radiance, on_device) = timed(&mut seconds, || match (self.light, self.evaluator) {
             (Light::Map(map), Evaluator::Device(_)) => {
-                Factors::new(map).of(self.evaluator).map(|coefficients| (coefficients, true))
+                MapFactors::new(map).of(self.evaluator).map(|coefficients| (coefficients, true))
             }
             (light, _) => Ok((harmonics::coefficients(light), false)),
         })?;
@@ -45,7 +45,7 @@ impl Order<'_> {
         let axes = [Axis::listed(Variable::Harmonic, (0..9).map(f64::from).collect())?];
         let table = |quantity: &'static Quantity, values: &Coefficients, truth: &Coefficients| {
             let rule = if let Light::Map(_) = self.light { "cells in closed form" } else { "closed form" };
-            let values = Values {
+            let values = RgbValues {
                 rgb: values.to_vec(),
                 rule: rule.into(),
                 precision,

@@ -3,8 +3,8 @@
 use crate::base::error::Result;
 use crate::base::timings::Stopwatch;
 use crate::base::timings::Timings;
-use crate::light::bake::{FLOOR, Order, Truths, Values, largest, normals, reference_frames, timed};
-use crate::light::irradiance::{Prepared, in_closed_form};
+use crate::light::bake::{FLOOR, Order, RgbValues, Truths, largest, normals, reference_frames, timed};
+use crate::light::irradiance::{PreparedMap, in_closed_form};
 use crate::light::{Environment, Light};
 use crate::table::Table;
 use crate::table::axis::Axis;
@@ -48,9 +48,9 @@ impl Order<'_> {
     }
 
     /// By twice finer and finer pieces of columns at the horizon, until two agree to half the tolerance.
-    fn over_map(&self, map: &Environment, normals: &[[f64; 3]]) -> Result<Values> {
+    fn over_map(&self, map: &Environment, normals: &[[f64; 3]]) -> Result<RgbValues> {
         let start = Stopwatch::start();
-        let map = Prepared::new(map);
+        let map = PreparedMap::new(map);
         let prepared = start.seconds();
         let tick = |share: f64| self.observer.advance(0.25 * share);
         let mut split = 1;
@@ -67,17 +67,17 @@ impl Order<'_> {
             if estimate <= 0.5 * self.tolerance || split >= FINEST_SPLIT {
                 let rule = format!("cells, {split} × 2 × 2 nodes where the horizon crosses them");
                 let precision = self.precision();
-                return Ok(Values { rgb, rule, precision, estimate: Some(estimate), seconds });
+                return Ok(RgbValues { rgb, rule, precision, estimate: Some(estimate), seconds });
             }
         }
     }
 }
 
 /// By closed forms.
-fn closed(light: &Light, normals: &[[f64; 3]]) -> Values {
+fn closed(light: &Light, normals: &[[f64; 3]]) -> RgbValues {
     let start = Stopwatch::start();
     let rgb = normals.iter().map(|&n| in_closed_form(light, n).unwrap_or([f64::NAN; 3])).collect();
-    Values {
+    RgbValues {
         rgb,
         rule: "closed form".into(),
         precision: "f64",

@@ -46,7 +46,7 @@ pub struct Order<'a> {
 }
 
 /// Values of a table before it is one.
-struct Values {
+struct RgbValues {
     rgb: Vec<[f64; 3]>,
     rule: String,
     precision: &'static str,
@@ -97,11 +97,11 @@ impl Order<'_> {
         quantity: &'static Quantity,
         subject: &str,
         axes: &[Axis],
-        values: Values,
+        values: RgbValues,
         floor: f64,
         truths: &[(usize, [f64; 3])],
     ) -> Result<Table> {
-        let Values { rgb: values, rule, precision, estimate, seconds } = values;
+        let RgbValues { rgb: values, rule, precision, estimate, seconds } = values;
         let floor = floor * largest(&values);
         let stored: Vec<f32> = values.as_flattened().iter().map(|&x| x as f32).collect();
         let mut tally = ErrorTally::new(TableError::unmeasured(quantity.error, Some(floor), estimate));

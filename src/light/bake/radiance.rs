@@ -4,7 +4,9 @@ use crate::base::angles::delta_phi;
 use crate::base::error::Result;
 use crate::base::timings::Timings;
 use crate::check::ReferenceLobe;
-use crate::light::bake::{FLOOR, MARGIN, Order, Values, estimate, frames, lobes_of, reference_frames, timed};
+use crate::light::bake::{
+    FLOOR, MARGIN, Order, RgbValues, estimate, frames, lobes_of, reference_frames, timed,
+};
 use crate::light::exitant;
 use crate::light::exitant::View;
 use crate::model::lobe::Lobe;
@@ -61,14 +63,14 @@ impl Order<'_> {
         let angles_axes = axes.clone();
         let axes: Vec<_> = swept.into_iter().chain(axes).collect();
         let precision = self.precision();
-        let exact = Values {
+        let exact = RgbValues {
             estimate: Some(estimate(&exact)),
             rgb: exact.iter().map(|one| one.value).collect(),
             rule: "cells, 2 × 2 nodes, quartered until they agree".into(),
             precision,
             seconds,
         };
-        let split = Values {
+        let split = RgbValues {
             rgb: split,
             rule: "pre-filtered radiance times the split sum".into(),
             precision,

@@ -5,7 +5,7 @@ use crate::base::timings::Timings;
 use crate::check::{Check, ReferenceLobe};
 use crate::light::bake::radiance::weighed;
 use crate::light::bake::{
-    FLOOR, MARGIN, Order, Truths, Values, estimate, frames, lobes_of, reference_frames, timed,
+    FLOOR, MARGIN, Order, RgbValues, Truths, estimate, frames, lobes_of, reference_frames, timed,
 };
 use crate::light::exitant;
 use crate::model::lobe::Lobe;
@@ -41,7 +41,7 @@ impl Order<'_> {
         })?;
         stages.dispatch += seconds;
         let subject = format!("{material} under {}", self.name);
-        let values = |rgb, estimate| Values {
+        let values = |rgb, estimate| RgbValues {
             rgb,
             rule: "cells, 2 × 2 nodes of ρ_dh, quartered until they agree".into(),
             precision: self.precision(),

@@ -3,8 +3,8 @@
 use crate::backend::gpu::baker::count;
 use crate::backend::gpu::device::Device;
 use crate::base::error::Result;
-use crate::light::device::{BAND_BYTES, Place, RESULT_BYTES, add, pieces};
-use crate::light::harmonics::{Coefficients, Factors};
+use crate::light::device::{BAND_BYTES, RESULT_BYTES, ResultBuffers, add, pieces};
+use crate::light::harmonics::{Coefficients, MapFactors};
 use crate::shader::Kernel;
 use bytemuck::{Pod, Zeroable};
 
@@ -16,7 +16,7 @@ const RESULTS: usize = 27;
 /// `Job` of `shaders/light/harmonics.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
-struct Job {
+struct HarmonicsJob {
     rows: u32,
     width: u32,
     shares: u32,
@@ -24,12 +24,12 @@ struct Job {
 }
 
 impl Device {
-    /// The coefficients of a map's radiance: as [`Factors::sum`], in f32.
-    pub(crate) fn harmonics(&self, factors: &Factors) -> Result<Coefficients> {
+    /// The coefficients of a map's radiance: as [`MapFactors::sum`], in f32.
+    pub(crate) fn harmonics(&self, factors: &MapFactors) -> Result<Coefficients> {
         self.guarded(|| self.harmonics_unguarded(factors))
     }
 
-    fn harmonics_unguarded(&self, factors: &Factors) -> Result<Coefficients> {
+    fn harmonics_unguarded(&self, factors: &MapFactors) -> Result<Coefficients> {
         let map = factors.map;
         let (width, height) = (map.width(), map.height());
         let shares = width.div_ceil(SHARE);
@@ -37,7 +37,7 @@ impl Device {
         let columns = self.storage(columns.as_flattened());
         let fits = BAND_BYTES / (12 * width);
         let band = fits.min(RESULT_BYTES / (4 * RESULTS * shares)).clamp(1, height);
-        let place = Place::new(self, Kernel::Harmonics, 4 * RESULTS * shares * band)?;
+        let place = ResultBuffers::new(self, Kernel::Harmonics, 4 * RESULTS * shares * band)?;
         let mut sums = [0.0; RESULTS];
         for rows in pieces(height, band) {
             let of_rows: Vec<_> =
@@ -45,7 +45,7 @@ impl Device {
             let of_rows = self.storage(of_rows.as_flattened());
             let texels = &map.texels()[rows.start * width..rows.end * width];
             let texels = self.storage(texels.as_flattened());
-            let job = Job {
+            let job = HarmonicsJob {
                 rows: count(rows.len())?,
                 width: count(width)?,
                 shares: count(shares)?,

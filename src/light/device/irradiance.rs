@@ -5,15 +5,15 @@ use crate::backend::gpu::baker::{EVALUATIONS_PER_DISPATCH, count};
 use crate::backend::gpu::device::Device;
 use crate::backend::gpu::loop_limit::SAFE_TURNS;
 use crate::base::error::Result;
-use crate::light::device::{BAND_BYTES, Place, RESULT_BYTES, add, pieces};
-use crate::light::irradiance::{BLOCK, Column, Prepared, Row};
+use crate::light::device::{BAND_BYTES, RESULT_BYTES, ResultBuffers, add, pieces};
+use crate::light::irradiance::{BLOCK, Column, PreparedMap, Row};
 use crate::shader::Kernel;
 use bytemuck::{Pod, Zeroable};
 
 /// `Job` of `shaders/light/irradiance.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
-struct Job {
+struct IrradianceJob {
     first: u32,
     count: u32,
     rows: u32,
@@ -29,11 +29,11 @@ struct Job {
 }
 
 impl Device {
-    /// E of some normals of the world, R, G, B: as [`Prepared::irradiance`], in f32. `tick` is called with shares of the
+    /// E of some normals of the world, R, G, B: as [`PreparedMap::irradiance`], in f32. `tick` is called with shares of the
     /// work, and stops it by an error.
     pub(crate) fn irradiance(
         &self,
-        map: &Prepared,
+        map: &PreparedMap,
         normals: &[[f64; 3]],
         split: u32,
         tick: &dyn Fn(f64) -> Result<()>,
@@ -43,7 +43,7 @@ impl Device {
 
     fn irradiance_unguarded(
         &self,
-        map: &Prepared,
+        map: &PreparedMap,
         normals: &[[f64; 3]],
         split: u32,
         tick: &dyn Fn(f64) -> Result<()>,
@@ -70,7 +70,7 @@ impl Device {
         let cost = 4 * split as usize * (width + 4 * band) + 8 * band;
         let most = (RESULT_BYTES / (12 * band)).min(EVALUATIONS_PER_DISPATCH / cost).max(1);
         let groups: Vec<_> = pieces(normals.len(), most).collect();
-        let place = Place::new(self, Kernel::Irradiance, 12 * most.min(normals.len()) * band)?;
+        let place = ResultBuffers::new(self, Kernel::Irradiance, 12 * most.min(normals.len()) * band)?;
         let crossed = crossed_columns(split);
         for rows in pieces(height, band) {
             let of_rows: Vec<_> = map.rows[rows.clone()].iter().map(of_row).collect();
@@ -84,7 +84,7 @@ impl Device {
             for group in &groups {
                 // Columns and the margins on both sides.
                 for part in pieces(width + 4 + 2 * map.margin.ceil() as usize, crossed) {
-                    let job = Job {
+                    let job = IrradianceJob {
                         first: count(group.start)?,
                         count: count(group.len())?,
                         rows: count(rows.len())?,

@@ -17,14 +17,14 @@ const BAND_BYTES: usize = 1 << 26;
 const RESULT_BYTES: usize = 1 << 25;
 
 /// A kernel, and where its results go.
-struct Place<'a> {
+struct ResultBuffers<'a> {
     device: &'a Device,
     pipeline: wgpu::ComputePipeline,
     output: wgpu::Buffer,
     staging: wgpu::Buffer,
 }
 
-impl<'a> Place<'a> {
+impl<'a> ResultBuffers<'a> {
     /// With room for so many bytes of results.
     fn new(device: &'a Device, kernel: Kernel, bytes: usize) -> Result<Self> {
         let pipeline = device.baker.pipeline(kernel, None, 3, Precision::F32)?;

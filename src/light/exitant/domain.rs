@@ -7,14 +7,14 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// The directions that a light comes from, as latitudes and longitudes of the light's frame.
 pub(super) struct Domain<'a> {
-    shape: Shape<'a>,
+    shape: DirectionMap<'a>,
     rows: usize,
     columns: usize,
     /// θ from 0 to here.
     end: f64,
 }
 
-enum Shape<'a> {
+enum DirectionMap<'a> {
     Map(Cow<'a, Environment>),
     Sky(Sky),
     Disk(&'a Disk, Frame),
@@ -26,14 +26,14 @@ impl<'a> Domain<'a> {
 
     pub fn new(light: &'a Light) -> Self {
         let [rows, columns] = Self::BEGIN;
-        let sky = |sky| Self { shape: Shape::Sky(sky), rows, columns, end: PI };
+        let sky = |sky| Self { shape: DirectionMap::Sky(sky), rows, columns, end: PI };
         match light {
             Light::Constant(radiance) => sky(Sky::uniform(*radiance)),
             Light::Sky(gradient) => sky(*gradient),
             Light::Disk(disk) => {
                 let (theta, phi) = angles(disk.direction());
                 Self {
-                    shape: Shape::Disk(disk, Frame::new(theta, phi)),
+                    shape: DirectionMap::Disk(disk, Frame::new(theta, phi)),
                     rows: 4,
                     columns: 16,
                     end: disk.radius(),
@@ -42,7 +42,7 @@ impl<'a> Domain<'a> {
             Light::Map(map) => {
                 let map = map.at_least(columns, rows);
                 let (rows, columns) = (map.height(), map.width());
-                Self { shape: Shape::Map(map), rows, columns, end: PI }
+                Self { shape: DirectionMap::Map(map), rows, columns, end: PI }
             }
             // A delta has no extent; `refine` evaluates it by itself.
             Light::Directional(_) => sky(Sky::uniform(Radiance::BLACK)),
@@ -50,7 +50,7 @@ impl<'a> Domain<'a> {
     }
 
     /// The cells that every view begins from.
-    pub fn cells(&self) -> Vec<Cell> {
+    pub fn cells(&self) -> Vec<DomainCell> {
         let [down, across] =
             [self.rows.div_ceil(Self::BEGIN[0]), self.columns.div_ceil(Self::BEGIN[1])].map(|n| n.max(1));
         let rows = (0..self.rows).step_by(down).map(|row| [row, (row + down).min(self.rows)]);
@@ -62,8 +62,8 @@ impl<'a> Domain<'a> {
         .collect()
     }
 
-    fn block(&self, rows: [usize; 2], columns: [usize; 2]) -> Cell {
-        Cell {
+    fn block(&self, rows: [usize; 2], columns: [usize; 2]) -> DomainCell {
+        DomainCell {
             theta: rows.map(|row| self.end * row as f64 / self.rows as f64),
             psi: columns.map(|column| TAU * column as f64 / self.columns as f64),
             rows: rows.map(|n| n as u32),
@@ -72,7 +72,7 @@ impl<'a> Domain<'a> {
         }
     }
 
-    pub fn quarters(&self, cell: &Cell) -> Vec<Cell> {
+    pub fn quarters(&self, cell: &DomainCell) -> Vec<DomainCell> {
         let halves = |[a, b]: [u32; 2]| {
             let middle = a + (b - a) / 2;
             if middle == a { vec![[a, b]] } else { vec![[a, middle], [middle, b]] }
@@ -86,44 +86,47 @@ impl<'a> Domain<'a> {
             return halves(cell.rows).into_iter().flat_map(of).collect();
         }
         let halves = |[a, b]: [f64; 2]| [[a, 0.5 * (a + b)], [0.5 * (a + b), b]];
-        let of = |theta| halves(cell.psi).map(|psi| Cell { theta, psi, depth: cell.depth + 1, ..*cell });
+        let of =
+            |theta| halves(cell.psi).map(|psi| DomainCell { theta, psi, depth: cell.depth + 1, ..*cell });
         halves(cell.theta).into_iter().flat_map(of).collect()
     }
 
     /// A vector of the domain's frame in the world, or back.
     pub fn to_world(&self, v: [f64; 3]) -> [f64; 3] {
         match &self.shape {
-            Shape::Map(map) => map.turn(v),
-            Shape::Sky(_) => v,
-            Shape::Disk(_, frame) => frame.to_world(v),
+            DirectionMap::Map(map) => map.turn(v),
+            DirectionMap::Sky(_) => v,
+            DirectionMap::Disk(_, frame) => frame.to_world(v),
         }
     }
 
     pub fn to_domain(&self, v: [f64; 3]) -> [f64; 3] {
         match &self.shape {
-            Shape::Map(map) => map.turn(v),
-            Shape::Sky(_) => v,
-            Shape::Disk(_, frame) => frame.to_local(v),
+            DirectionMap::Map(map) => map.turn(v),
+            DirectionMap::Sky(_) => v,
+            DirectionMap::Disk(_, frame) => frame.to_local(v),
         }
     }
 
     /// L at a cosine of θ, in a cell where it is smooth.
-    pub fn radiance(&self, cell: &Cell, cos: f64) -> [f64; 3] {
+    pub fn radiance(&self, cell: &DomainCell, cos: f64) -> [f64; 3] {
         match &self.shape {
-            Shape::Map(map) => map.texel(cell.rows[0] as usize, cell.columns[0] as usize).map(f64::from),
+            DirectionMap::Map(map) => {
+                map.texel(cell.rows[0] as usize, cell.columns[0] as usize).map(f64::from)
+            }
             // The middle decides: borders of cells lie on the horizon.
-            Shape::Sky(sky) if cell.theta[0] + cell.theta[1] > PI => sky.ground(),
-            Shape::Sky(sky) => {
+            DirectionMap::Sky(sky) if cell.theta[0] + cell.theta[1] > PI => sky.ground(),
+            DirectionMap::Sky(sky) => {
                 std::array::from_fn(|c| sky.horizon()[c] + (sky.zenith()[c] - sky.horizon()[c]) * cos)
             }
-            Shape::Disk(disk, _) => disk.radiance(),
+            DirectionMap::Disk(disk, _) => disk.radiance(),
         }
     }
 
     /// L Δω of each texel of a block, as shares of its four nodes.
-    pub fn shares(&self, cell: &Cell) -> [[f64; 3]; 4] {
+    pub fn shares(&self, cell: &DomainCell) -> [[f64; 3]; 4] {
         let mut shares = [[0.0; 3]; 4];
-        let Shape::Map(map) = &self.shape else { return shares };
+        let DirectionMap::Map(map) = &self.shape else { return shares };
         let [rows, columns] = [cell.rows, cell.columns].map(|[a, b]| a as usize..b as usize);
         // The middle of texel k of n, in [−1, 1]; and the two linear functions that are 1 at one node and 0 at the other.
         let hats = |k: usize, n: usize| {
@@ -148,7 +151,7 @@ impl<'a> Domain<'a> {
 
 /// Some directions of a domain.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Cell {
+pub(super) struct DomainCell {
     pub theta: [f64; 2],
     pub psi: [f64; 2],
     /// Texels from the first to before the last; of less than one, that one.
@@ -158,7 +161,7 @@ pub(super) struct Cell {
     pub depth: u32,
 }
 
-impl Cell {
+impl DomainCell {
     /// Whether L is smooth in it.
     pub fn is_flat(&self) -> bool {
         self.rows[1] - self.rows[0] == 1 && self.columns[1] - self.columns[0] == 1

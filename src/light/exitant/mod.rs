@@ -128,15 +128,15 @@ fn width(lobe: &Lobe) -> f64 {
 
 /// E of some normals, by whichever way the light has; neighbours that are equal are integrated once.
 fn irradiance_of(evaluator: &Evaluator, light: &Light, normals: &[[f64; 3]]) -> Result<Vec<[f64; 3]>> {
-    let mut own: Vec<[f64; 3]> = Vec::new();
+    let mut distinct: Vec<[f64; 3]> = Vec::new();
     let mut places = Vec::with_capacity(normals.len());
     for &normal in normals {
-        if own.last() != Some(&normal) {
-            own.push(normal);
+        if distinct.last() != Some(&normal) {
+            distinct.push(normal);
         }
-        places.push(own.len() - 1);
+        places.push(distinct.len() - 1);
     }
-    let found = irradiance_of_each(evaluator, light, &own)?;
+    let found = irradiance_of_each(evaluator, light, &distinct)?;
     Ok(places.into_iter().map(|place| found[place]).collect())
 }
 
@@ -145,6 +145,6 @@ fn irradiance_of_each(evaluator: &Evaluator, light: &Light, normals: &[[f64; 3]]
         let closed = |&normal: &[f64; 3]| irradiance::in_closed_form(light, normal).unwrap_or([f64::NAN; 3]);
         return Ok(normals.iter().map(closed).collect());
     };
-    let map = irradiance::Prepared::new(map);
+    let map = irradiance::PreparedMap::new(map);
     map.of(evaluator, normals, 2, &|_| Ok(()))
 }

@@ -8,7 +8,7 @@
 
 use crate::base::angles::Angles;
 use crate::light::exitant::View;
-use crate::light::exitant::domain::{Cell, Domain};
+use crate::light::exitant::domain::{Domain, DomainCell};
 use crate::light::irradiance::range;
 use crate::light::{angles, direction, dot};
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -32,17 +32,17 @@ impl Local {
     }
 
     /// What of a cell is above the surface.
-    fn side(&self, cell: &Cell) -> Side {
+    fn side(&self, cell: &DomainCell) -> HorizonSide {
         let [low, _] = range(&corners(cell).map(|at| self.height(at)));
         if low >= 0.0 {
-            return Side::Above;
+            return HorizonSide::Above;
         }
         // Corners may all be below where the middle of a side is not.
-        if self.height(cell.middle()) < -cell.size() { Side::Below } else { Side::Crossed }
+        if self.height(cell.middle()) < -cell.size() { HorizonSide::Below } else { HorizonSide::Crossed }
     }
 
     /// The corner that is the farthest above the surface, or the least below.
-    fn highest_corner(&self, cell: &Cell) -> (f64, f64) {
+    fn highest_corner(&self, cell: &DomainCell) -> (f64, f64) {
         let higher = |a, b| if self.height(b) >= self.height(a) { b } else { a };
         let [first, rest @ ..] = corners(cell);
         rest.into_iter().fold(first, higher)
@@ -55,7 +55,7 @@ impl Local {
 
     /// What of a cell's meridian is above the surface, from θ to θ: n·ω = A cos θ + B sin θ > 0 within a quarter turn of its
     /// peak, which for θ ∈ [0, π] is one stretch. The first is the larger where nothing is.
-    fn above(&self, cell: &Cell, psi: f64) -> [f64; 2] {
+    fn above(&self, cell: &DomainCell, psi: f64) -> [f64; 2] {
         let across = self.normal[0] * psi.cos() + self.normal[1] * psi.sin();
         let peak = across.atan2(self.normal[2]);
         let peak = if peak < -FRAC_PI_2 { peak + TAU } else { peak };
@@ -63,7 +63,7 @@ impl Local {
     }
 
     /// Whether the lobe's peak may lie between the nodes of a cell.
-    fn hides_the_peak(&self, cell: &Cell) -> bool {
+    fn hides_the_peak(&self, cell: &DomainCell) -> bool {
         let size = cell.size();
         let (t, p) = cell.middle();
         let middle = direction(t, p);
@@ -73,19 +73,19 @@ impl Local {
 }
 
 /// (θ, ψ) of a cell's corners.
-fn corners(cell: &Cell) -> [(f64, f64); 4] {
+fn corners(cell: &DomainCell) -> [(f64, f64); 4] {
     std::array::from_fn(|k| (cell.theta[k / 2], cell.psi[k % 2]))
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Side {
+pub(super) enum HorizonSide {
     Above,
     Below,
     Crossed,
 }
 
 /// Nodes of a cell: angles, and for each the weight L Δω cos θi in R, G and B.
-pub(super) struct Nodes {
+pub(super) struct CellNodes {
     pub angles: Vec<Angles>,
     pub weights: Vec<[f64; 3]>,
     pub cosines: Vec<f64>,
@@ -94,7 +94,7 @@ pub(super) struct Nodes {
     pub unseen: f64,
     /// What a coarser rule, of the outer nodes alone, weighs each with in place of 1.
     pub outer: Vec<f64>,
-    pub side: Side,
+    pub side: HorizonSide,
     /// Whether a lobe's peak may lie between them.
     pub hides: bool,
 }
@@ -107,9 +107,9 @@ const THREE: [(f64, f64, f64); 3] = [
     (0.774_596_669_241_483_4, 5.0 / 18.0, 1.8),
 ];
 
-pub(super) fn nodes(domain: &Domain, local: &Local, cell: &Cell) -> Nodes {
+pub(super) fn nodes(domain: &Domain, local: &Local, cell: &DomainCell) -> CellNodes {
     let side = local.side(cell);
-    let mut nodes = Nodes {
+    let mut nodes = CellNodes {
         angles: Vec::new(),
         weights: Vec::new(),
         cosines: Vec::new(),
@@ -118,7 +118,7 @@ pub(super) fn nodes(domain: &Domain, local: &Local, cell: &Cell) -> Nodes {
         side,
         hides: false,
     };
-    if side == Side::Below {
+    if side == HorizonSide::Below {
         return nodes;
     }
     nodes.hides = local.hides_the_peak(cell);
@@ -139,7 +139,7 @@ pub(super) fn nodes(domain: &Domain, local: &Local, cell: &Cell) -> Nodes {
             nodes.outer.push(outer);
         }
     };
-    if cell.is_flat() && side == Side::Crossed {
+    if cell.is_flat() && side == HorizonSide::Crossed {
         let mut is_seen = true;
         for (x, wx, outer_x) in THREE {
             let psi = p + half[1] * x;

@@ -52,17 +52,17 @@ pub fn split_sum(
     let white = Light::Constant(Radiance::WHITE);
     for lobe in lobes {
         // A and B hang on θe alone (and on φe where azimuths tell): each is integrated once.
-        let mut own: Vec<View> = Vec::new();
-        let at = |view: &View| View { frame: Frame::new(0.0, 0.0), ..*view };
+        let mut distinct: Vec<View> = Vec::new();
+        let at_zenith = |view: &View| View { frame: Frame::new(0.0, 0.0), ..*view };
         let same = |a: &View, b: &View| {
             a.theta_e == b.theta_e && (a.phi_e == b.phi_e || !lobe.model().is_anisotropic())
         };
-        for view in views.iter().map(at) {
-            if !own.iter().any(|known| same(known, &view)) {
-                own.push(view);
+        for view in views.iter().map(at_zenith) {
+            if !distinct.iter().any(|known| same(known, &view)) {
+                distinct.push(view);
             }
         }
-        let terms = radiance(evaluator, std::slice::from_ref(lobe), &white, &own, tolerance, observer)?;
+        let terms = radiance(evaluator, std::slice::from_ref(lobe), &white, &distinct, tolerance, observer)?;
         let incident = if lobe.model().shape.is_some() || lobe.model().is_delta() {
             let mirrors: Vec<_> = views.iter().map(View::mirror).collect();
             prefiltered(evaluator, lobe, light, &mirrors, tolerance, observer)?
@@ -71,7 +71,7 @@ pub fn split_sum(
             irradiance_of(evaluator, light, &normals)?.into_iter().map(|e| e.map(|e| e / PI)).collect()
         };
         for ((sum, view), incident) in all.iter_mut().zip(views).zip(incident) {
-            let found = own.iter().position(|known| same(known, &at(view)));
+            let found = distinct.iter().position(|known| same(known, &at_zenith(view)));
             let Some(term) = found.and_then(|k| terms.get(k)) else { continue };
             (0..3).for_each(|c| sum[c] += incident[c] * term.value[c]);
         }

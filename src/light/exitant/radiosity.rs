@@ -37,7 +37,7 @@ pub fn radiosity(
         let value = std::array::from_fn(|c| PI * radiance.rgb()[c] * rho[c]);
         return Ok(vec![Integrated { value, error: 0.0 }; frames.len()]);
     }
-    let albedo = Albedo::new(evaluator, scene, material)?;
+    let albedo = SampledAlbedo::new(evaluator, scene, material)?;
     let mut f = |angles: &[Angles], values: &mut Vec<f32>| {
         values.clear();
         values.extend(angles.iter().flat_map(|angles| albedo.at(angles.theta_i).map(|rho| rho as f32)));
@@ -48,11 +48,11 @@ pub fn radiosity(
 }
 
 /// ρ_dh of a material over θ, R, G, B; between its samples it is interpolated.
-struct Albedo {
+struct SampledAlbedo {
     values: Vec<[f64; 3]>,
 }
 
-impl Albedo {
+impl SampledAlbedo {
     /// Samples over θ in even steps: between them ρ is off by their square, 1e-7 over α², and less than that of f32.
     const SAMPLES: usize = 4097;
 

@@ -10,8 +10,8 @@
 use crate::bake::Observer;
 use crate::base::angles::Angles;
 use crate::base::error::Result;
-use crate::light::exitant::domain::{Cell, Domain};
-use crate::light::exitant::nodes::{Local, Nodes, Side, nodes};
+use crate::light::exitant::domain::{Domain, DomainCell};
+use crate::light::exitant::nodes::{CellNodes, HorizonSide, Local, nodes};
 use crate::light::exitant::{Integrated, View};
 use crate::light::{Light, angles};
 use rayon::prelude::*;
@@ -63,13 +63,13 @@ fn directional(
     irradiance: [f64; 3],
     views: &[View],
 ) -> Result<Vec<Integrated>> {
-    let place = |view: &View| {
+    let local_angles = |view: &View| {
         let local = view.frame.to_local(direction);
         let (theta_i, phi_i) = angles(local);
         let theta_i = theta_i.min(FRAC_PI_2);
         (Angles { theta_i, phi_i, theta_e: view.theta_e, phi_e: view.phi_e }, local[2].max(0.0))
     };
-    let (angles, cosines): (Vec<_>, Vec<_>) = views.iter().map(place).unzip();
+    let (angles, cosines): (Vec<_>, Vec<_>) = views.iter().map(local_angles).unzip();
     let mut values = Vec::new();
     f(&angles, &mut values)?;
     let value = |(f, cos): (&[f32; 3], f64)| {
@@ -82,7 +82,7 @@ fn directional(
 /// A cell of a view with what it sends and what that may be off.
 struct Leaf {
     view: usize,
-    cell: Cell,
+    cell: DomainCell,
     value: [f64; 3],
     error: f64,
     /// Whether errors of its kind have no common sign.
@@ -92,11 +92,11 @@ struct Leaf {
 fn refine(
     f: &mut Integrand,
     domain: &Domain,
-    begin: &[Cell],
+    begin: &[DomainCell],
     views: &[Local],
     tolerance: f64,
 ) -> Result<Vec<Integrated>> {
-    let mut pending: Vec<(usize, Cell)> =
+    let mut pending: Vec<(usize, DomainCell)> =
         (0..views.len()).flat_map(|view| begin.iter().map(move |&cell| (view, cell))).collect();
     let mut leaves: Vec<Leaf> = Vec::new();
     loop {
@@ -131,7 +131,7 @@ fn budgets(leaves: &[Leaf], views: usize, tolerance: f64) -> (Vec<Integrated>, V
             counts[kind] += 1;
         }
     }
-    let of = |&(value, [smooth, varied], [n, m]): &([f64; 3], [f64; 2], [usize; 2])| {
+    let limited = |&(value, [smooth, varied], [n, m]): &([f64; 3], [f64; 2], [usize; 2])| {
         let mean = value.iter().sum::<f64>() / 3.0;
         let allowed = 0.5 * tolerance * mean;
         let limits = if smooth + varied.sqrt() <= 2.0 * allowed {
@@ -142,7 +142,7 @@ fn budgets(leaves: &[Leaf], views: usize, tolerance: f64) -> (Vec<Integrated>, V
         };
         (Integrated { value, error: smooth + varied.sqrt() }, limits)
     };
-    totals.iter().map(of).unzip()
+    totals.iter().map(limited).unzip()
 }
 
 /// Appends the leaves of some cells.
@@ -150,7 +150,7 @@ fn evaluate(
     f: &mut Integrand,
     domain: &Domain,
     views: &[Local],
-    cells: &[(usize, Cell)],
+    cells: &[(usize, DomainCell)],
     leaves: &mut Vec<Leaf>,
 ) -> Result<()> {
     let nodes: Vec<_> = cells.par_iter().map(|(view, cell)| nodes(domain, &views[*view], cell)).collect();
@@ -163,7 +163,7 @@ fn evaluate(
     for (&(view, cell), nodes) in cells.iter().zip(&nodes) {
         let (own, more) = rest.split_at(nodes.angles.len());
         rest = more;
-        if nodes.side == Side::Below {
+        if nodes.side == HorizonSide::Below {
             continue;
         }
         leaves.push(leaf(view, cell, nodes, own));
@@ -171,7 +171,7 @@ fn evaluate(
     Ok(())
 }
 
-fn leaf(view: usize, cell: Cell, nodes: &Nodes, values: &[[f32; 3]]) -> Leaf {
+fn leaf(view: usize, cell: DomainCell, nodes: &CellNodes, values: &[[f32; 3]]) -> Leaf {
     let mut value = [0.0; 3];
     // Of f cos θi in the mean of the channels; and of all that L could send with the largest of it.
     let (mut low, mut high, mut light) = (f64::INFINITY, 0.0f64, 0.0);
@@ -190,19 +190,19 @@ fn leaf(view: usize, cell: Cell, nodes: &Nodes, values: &[[f32; 3]]) -> Leaf {
     let corner = values.last().zip(nodes.cosines.last()).filter(|_| nodes.unseen > 0.0);
     let corner = corner.map_or(0.0, |(f, cos)| cos * f.iter().map(|&f| f64::from(f)).sum::<f64>() / 3.0);
     let unseen = nodes.unseen * corner;
-    let most = light * high;
+    let largest = light * high;
     let spread = if high > 0.0 { ((high - low) / high).clamp(0.0, 1.0) } else { 0.0 };
-    let error = match (cell.is_flat(), nodes.side == Side::Crossed) {
+    let error = match (cell.is_flat(), nodes.side == HorizonSide::Crossed) {
         _ if nodes.hides => f64::INFINITY,
         // Down to texels, which are cut.
         (false, true) => f64::INFINITY,
-        (false, false) => VARIED * spread * spread * most,
+        (false, false) => VARIED * spread * spread * largest,
         (true, true) => CUT * (sum - coarse).abs() + UNSEEN * unseen,
-        (true, false) => SMOOTH * spread.powi(4) * most,
+        (true, false) => SMOOTH * spread.powi(4) * largest,
     };
     let varied = !cell.is_flat();
     // What no light comes from needs no parts; of a block whose nodes are all below, that is not known.
-    let unknown = !cell.is_flat() && nodes.side == Side::Crossed;
+    let unknown = !cell.is_flat() && nodes.side == HorizonSide::Crossed;
     let error = if light > 0.0 || unseen > 0.0 || unknown { error } else { 0.0 };
     Leaf { view, cell, value, error, varied }
 }

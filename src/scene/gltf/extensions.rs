@@ -2,7 +2,7 @@
 
 use crate::base::error::{Error, Result};
 use crate::model;
-use crate::scene::Input;
+use crate::scene::FormulaInput;
 use crate::scene::gltf::texels::Channel;
 use crate::scene::gltf::{Texture, texture};
 use ::gltf::json::{self, Root, Value};
@@ -10,11 +10,11 @@ use ::gltf::json::{self, Root, Value};
 /// What the extensions of a material say of its reflection, with defaults for those that it has not.
 pub struct Extended {
     /// F0 of the dielectric without `specular`: `dielectric_f0`.
-    pub f0: Input,
+    pub f0: FormulaInput,
     /// The strength of the dielectric's reflection, which is its F90.
-    pub specular: Input,
-    pub transmission: Input,
-    pub diffuse_transmission: Input,
+    pub specular: FormulaInput,
+    pub transmission: FormulaInput,
+    pub diffuse_transmission: FormulaInput,
     /// The strength of anisotropy.
     pub strength: f64,
     pub film: Option<Film>,
@@ -29,7 +29,7 @@ pub struct Extended {
 
 /// KHR_materials_iridescence.
 pub struct Film {
-    pub factor: Input,
+    pub factor: FormulaInput,
     /// nm
     pub thickness: f64,
     pub eta: f64,
@@ -37,13 +37,13 @@ pub struct Film {
 
 /// KHR_materials_clearcoat.
 pub struct Coat {
-    pub factor: Input,
+    pub factor: FormulaInput,
     pub roughness: Scaled,
 }
 
 /// KHR_materials_sheen.
 pub struct Sheen {
-    pub color: Input,
+    pub color: FormulaInput,
     pub roughness: Scaled,
 }
 
@@ -171,10 +171,16 @@ impl Extension<'_> {
     }
 
     /// A factor in [0, 1] that a texture may multiply.
-    fn strength(&self, name: &'static str, factor: &str, default: f64, texture: &str) -> Result<Input> {
+    fn strength(
+        &self,
+        name: &'static str,
+        factor: &str,
+        default: f64,
+        texture: &str,
+    ) -> Result<FormulaInput> {
         let value = self.number(factor, default, [0.0, 1.0])?;
         let varies = self.texture(texture)?.is_some() && value > 0.0;
-        Ok(Input { name, value: [value; 3], least: varies.then_some(0.0) })
+        Ok(FormulaInput { name, value: [value; 3], least: varies.then_some(0.0) })
     }
 
     fn ior(&self) -> Result<f64> {
@@ -185,7 +191,7 @@ impl Extension<'_> {
     }
 
     /// min(((ior − 1)/(ior + 1))² specularColor, 1); an ior of 0 stands for ∞.
-    fn dielectric_f0(&self, ior: f64) -> Result<Input> {
+    fn dielectric_f0(&self, ior: f64) -> Result<FormulaInput> {
         let f0 = match ior {
             0.0 => 1.0,
             1.5 => 0.04,
@@ -194,7 +200,7 @@ impl Extension<'_> {
         let color = self.color("specularColorFactor", 1.0, [0.0, f64::MAX])?;
         let value = color.map(|color| (f0 * color).min(1.0));
         let varies = self.texture("specularColorTexture")?.is_some() && value != [0.0; 3];
-        Ok(Input { name: "dielectric_f0", value, least: varies.then_some(0.0) })
+        Ok(FormulaInput { name: "dielectric_f0", value, least: varies.then_some(0.0) })
     }
 
     /// The strength, the largest where a texture has it.
@@ -267,7 +273,7 @@ impl Extension<'_> {
         let value = self.color("sheenColorFactor", 0.0, [0.0, 1.0])?;
         let varies = self.texture("sheenColorTexture")?.is_some();
         let roughness = self.scaled(["sheenRoughnessFactor", "sheenRoughnessTexture"], Channel::Alpha)?;
-        let color = Input { name: "sheen_color", value, least: varies.then_some(0.0) };
+        let color = FormulaInput { name: "sheen_color", value, least: varies.then_some(0.0) };
         Ok((value != [0.0; 3]).then_some(Sheen { color, roughness }))
     }
 

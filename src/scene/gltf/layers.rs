@@ -16,12 +16,12 @@
 use crate::model;
 use crate::model::compensation::{Albedo, Compensation, Factor};
 use crate::scene::gltf::extensions::Extended;
-use crate::scene::{Distribution, Formula, Input, MaterialLobe, Weights};
+use crate::scene::{Distribution, Formula, FormulaInput, MaterialLobe, Weights};
 
 /// A material's quantities.
 pub struct Layers<'a> {
-    pub base_color: &'a Input,
-    pub metallic: &'a Input,
+    pub base_color: &'a FormulaInput,
+    pub metallic: &'a FormulaInput,
     pub roughness: Distribution,
     pub coat_roughness: Option<Distribution>,
     pub sheen_roughness: Option<Distribution>,
@@ -31,7 +31,7 @@ pub struct Layers<'a> {
 
 /// A lobe as it is put together.
 #[derive(Clone)]
-struct Part {
+struct LayerLobe {
     model: String,
     roughness: Option<Distribution>,
     parameters: Vec<(String, [f64; 3])>,
@@ -59,7 +59,7 @@ impl Layers<'_> {
                 true => Weights::Textured(part.weights),
                 false => Weights::Constant([a.value(), b.value()]),
             };
-            let Part { model, roughness, parameters, factors, .. } = part;
+            let LayerLobe { model, roughness, parameters, factors, .. } = part;
             let compensation = Compensation::None;
             Some(MaterialLobe { model, roughness, parameters, weights, compensation, factors })
         });
@@ -67,14 +67,14 @@ impl Layers<'_> {
     }
 
     /// Appendix B with KHR_materials_ior, _specular, _anisotropy, _iridescence, and what transmission takes.
-    fn base(&self) -> Vec<Part> {
+    fn base(&self) -> Vec<LayerLobe> {
         let Extended { f0, specular, transmission, diffuse_transmission, strength, film, .. } = self.extended;
         let (c, m) = (self.base_color, self.metallic);
         let below = |weight: Formula| {
             let weight = weight.times(&m.rest()).times(&c.all());
             weight.times(&transmission.rest()).times(&diffuse_transmission.rest())
         };
-        let diffuse = |smooth: &str, rough: &str, weight: Formula| Part {
+        let diffuse = |smooth: &str, rough: &str, weight: Formula| LayerLobe {
             model: (if self.diffuse_roughness.is_some() { rough } else { smooth }).into(),
             roughness: self.diffuse_roughness.clone(),
             parameters: Vec::new(),
@@ -85,7 +85,7 @@ impl Layers<'_> {
             0.0 => ("ggx", Vec::new()),
             strength => ("ggx-anisotropic", vec![("strength".into(), [strength; 3])]),
         };
-        let specular_lobe = Part {
+        let specular_lobe = LayerLobe {
             model: ndf.into(),
             roughness: Some(self.roughness.clone()),
             parameters,
@@ -119,7 +119,7 @@ impl Layers<'_> {
         }
         if !film.factor.rest().is_zero() {
             let weights = specular_lobe.weights.each_ref().map(|weight| weight.times(&film.factor.rest()));
-            parts.push(Part { weights, ..specular_lobe });
+            parts.push(LayerLobe { weights, ..specular_lobe });
         }
         parts
     }
@@ -127,7 +127,7 @@ impl Layers<'_> {
     /// KHR_materials_sheen: f_sheen + base · min(1 − m E(μi), 1 − m E(μe)), m the largest channel of its colour. As that is
     /// linear in m, a colour that varies has formulas for both parts. A roughness that varies is one that E has too: see
     /// `Material::at`.
-    fn sheen(&self, parts: &mut Vec<Part>) {
+    fn sheen(&self, parts: &mut Vec<LayerLobe>) {
         let (Some(sheen), Some(roughness)) = (&self.extended.sheen, &self.sheen_roughness) else { return };
         let model = with_fresnel("charlie", "none");
         let Ok(charlie) = model::find(&model) else { return };
@@ -140,7 +140,7 @@ impl Layers<'_> {
         } else {
             parts.iter_mut().for_each(|part| part.factors.push(Factor::BelowSheen { of: of.clone(), most }));
         }
-        parts.push(Part {
+        parts.push(LayerLobe {
             model,
             roughness: Some(roughness.clone()),
             parameters: Vec::new(),
@@ -150,9 +150,9 @@ impl Layers<'_> {
     }
 
     /// KHR_materials_clearcoat: mix(base, F = 1 specular lobe, clearcoat · (0.04 + 0.96 (1 − μe)⁵)).
-    fn coat(&self, parts: &mut Vec<Part>) {
+    fn coat(&self, parts: &mut Vec<LayerLobe>) {
         let (Some(coat), Some(roughness)) = (&self.extended.coat, &self.coat_roughness) else { return };
-        let own = |weight: f64, formula: Formula| Part {
+        let own = |weight: f64, formula: Formula| LayerLobe {
             model: with_fresnel("ggx", "none"),
             roughness: Some(roughness.clone()),
             parameters: Vec::new(),
@@ -169,7 +169,7 @@ impl Layers<'_> {
         }
     }
 
-    fn why_nothing(&self, part: &Part) -> String {
+    fn why_nothing(&self, part: &LayerLobe) -> String {
         let weight = &part.weights[0];
         let because = if !part.is_diffuse() {
             "it reflects nothing there"
@@ -186,19 +186,19 @@ impl Layers<'_> {
     }
 }
 
-impl Part {
+impl LayerLobe {
     fn is_diffuse(&self) -> bool {
         matches!(self.model.as_str(), "gltf_diffuse" | "lambert" | "gltf_oren_nayar" | "oren-nayar")
     }
 }
 
 /// What lies below a layer whose strength w varies: as it is, times 1 − w, and dimmed, times w.
-fn below(parts: &mut Vec<Part>, [rest, strength]: [Formula; 2], factor: &Factor) {
-    let times = |part: &Part, by: &Formula| part.weights.each_ref().map(|weight| weight.times(by));
+fn below(parts: &mut Vec<LayerLobe>, [rest, strength]: [Formula; 2], factor: &Factor) {
+    let times = |part: &LayerLobe, by: &Formula| part.weights.each_ref().map(|weight| weight.times(by));
     let split = parts.iter().flat_map(|part| {
-        let mut dimmed = Part { weights: times(part, &strength), ..part.clone() };
+        let mut dimmed = LayerLobe { weights: times(part, &strength), ..part.clone() };
         dimmed.factors.push(factor.clone());
-        [Part { weights: times(part, &rest), ..part.clone() }, dimmed]
+        [LayerLobe { weights: times(part, &rest), ..part.clone() }, dimmed]
     });
     *parts = split.collect();
 }

@@ -6,14 +6,14 @@ use crate::scene::gltf::file::GltfFile;
 use crate::scene::gltf::layers::Layers;
 use crate::scene::gltf::texels::{Channel, Texels};
 use crate::scene::gltf::{Texture, texture, unit};
-use crate::scene::{Distribution, Input, LeftOut, Material, Scene};
+use crate::scene::{Distribution, FormulaInput, LeftOut, Material, Scene};
 use ::gltf::json::{self, Root};
 use std::collections::BTreeMap;
 
 /// A material of the file, with its numbers checked and its textures looked up, not yet decoded.
-pub struct Source {
+pub struct MaterialSource {
     name: String,
-    base_color: Input,
+    base_color: FormulaInput,
     metallic: f64,
     roughness: f64,
     texture: Option<Texture>,
@@ -23,7 +23,7 @@ pub struct Source {
 /// Decoded images, by index; what cannot be read says why.
 type Images = BTreeMap<usize, Result<Texels, String>>;
 
-impl Source {
+impl MaterialSource {
     pub fn check(root: &Root, material: &json::Material, name: &str, vertex_colors: bool) -> Result<Self> {
         let pbr = &material.pbr_metallic_roughness;
         let [r, g, b, _] = pbr.base_color_factor.0.map(exact);
@@ -37,7 +37,7 @@ impl Source {
         let base_color_varies = (pbr.base_color_texture.is_some() || vertex_colors) && value != [0.0; 3];
         Ok(Self {
             name: name.into(),
-            base_color: Input { name: "base_color", value, least: base_color_varies.then_some(0.0) },
+            base_color: FormulaInput { name: "base_color", value, least: base_color_varies.then_some(0.0) },
             metallic: unit("metallicFactor", exact(pbr.metallic_factor.0))?,
             roughness: unit("roughnessFactor", exact(pbr.roughness_factor.0))?,
             texture: metallic_roughness
@@ -108,7 +108,8 @@ impl Source {
         let coat_roughness = coat.as_ref().map(|coat| scaled("the coat's roughness", &coat.roughness));
         let sheen_roughness = sheen.as_ref().map(|sheen| scaled("the sheen's roughness", &sheen.roughness));
         let diffuse_roughness = diffuse_roughness.as_ref().map(|of| scaled("the diffuse roughness", of));
-        let metallic = Input { name: "metallic", value: [most; 3], least: (least < most).then_some(least) };
+        let metallic =
+            FormulaInput { name: "metallic", value: [most; 3], least: (least < most).then_some(least) };
         let layers = Layers {
             base_color: &self.base_color,
             metallic: &metallic,
