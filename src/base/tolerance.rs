@@ -5,15 +5,15 @@
 //!
 //! | who spends | share | why |
 //! |---|---|---|
-//! | the quadrature rule | T, or T/10 ([`RULE_SHARE`]) where storage rounds or a reader interpolates | rounding to f16 or unorm16 and bilinear look-ups take the rest |
-//! | the rule below unorm16 | at most ¼ step ([`UNORM_RULE`]) | the rule may not lift an integral of 1 above what rounds to 1 |
-//! | interpolation between integrals | 1/8 of the rule's share along each axis ([`CHEBYSHEV_SHARE`]) | the rule at the sources and f32 rounding take the other 6/8 |
-//! | a lobe times factors | 1/100 of the rule's share ([`FACTOR_SHARE`]) | node counts are measured for the lobe alone; a factor bends ρ where the lobe does not: with counts of the full share a restored lobe is off by 9e-6 at 1e-6 |
-//! | the certificate's second rule | T/10 ([`CERTIFY_RATIO`]) | its own error then is a tenth of what it judges |
-//! | a texel that the certificate keeps | T/2 ([`KEPT_SHARE`]) | both rules may err towards each other |
-//! | energy above the declared bound | 2 T ([`ENERGY_SLACK`]) | two channels add up, each within T |
-//! | a layout's bilinear error | 0.98 T ([`LAYOUT_MARGIN`]) | the search tests points; the worst lies between them |
-//! | the search's reference table | T/100 ([`LAYOUT_REFERENCE_SHARE`]) | it stands in for the exact values |
+//! | the quadrature rule | T, or T/10 (`RULE_SHARE`) where storage rounds or a reader interpolates | rounding to f16 or unorm16 and bilinear look-ups take the rest |
+//! | the rule below unorm16 | at most ¼ step (`UNORM_RULE`) | the rule may not lift an integral of 1 above what rounds to 1 |
+//! | interpolation between integrals | 1/8 of the rule's share along each axis (`CHEBYSHEV_SHARE`) | the rule at the sources and f32 rounding take the other 6/8 |
+//! | a lobe times factors | 1/100 of the rule's share (`FACTOR_SHARE`) | node counts are measured for the lobe alone; a factor bends ρ where the lobe does not: with counts of the full share a restored lobe is off by 9e-6 at 1e-6 |
+//! | the certificate's second rule | T/10 (`CERTIFY_RATIO`) | its own error then is a tenth of what it judges |
+//! | a texel that the certificate keeps | T/2 (`KEPT_SHARE`) | both rules may err towards each other |
+//! | energy above the declared bound | 2 T (`ENERGY_SLACK`) | two channels add up, each within T |
+//! | a layout's bilinear error | 0.98 T (`LAYOUT_MARGIN`) | the search tests points; the worst lies between them |
+//! | the search's reference table | T/100 (`LAYOUT_REFERENCE_SHARE`) | it stands in for the exact values |
 //!
 //! What follows from a table's tolerance (the rule's share, the precision, the storage) is decided once, when
 //! the plan is checked, and carried by [`TablePlan`](crate::plan::TablePlan).

@@ -253,7 +253,7 @@ pub fn find(name: &str) -> Result<&'static Model> {
     })
 }
 
-/// Every model: [`MODELS`], then their siblings of other terms, then those that were [`register`]ed.
+/// Every model: [`MODELS`], then their siblings of other terms, then those that were registered at run time.
 pub fn all() -> impl Iterator<Item = &'static Model> {
     let siblings = MICROFACETS.iter().chain(MIRRORS.iter()).filter(|model| !MODELS.contains(model));
     let registered = REGISTERED.read().unwrap_or_else(PoisonError::into_inner).clone();
