@@ -110,7 +110,7 @@ const MODELS: [Promise; 17] = [
 ];
 
 /// The distributions of normals.
-const NORMALS: [Promise; 7] = [
+const NORMALS: [Promise; 8] = [
     promise("ggx", 40.0, 1.0),
     // 40, and five of the exponent tan²θm/α² ≤ 128.
     promise("beckmann", 680.0, 1.0),
@@ -121,6 +121,9 @@ const NORMALS: [Promise; 7] = [
     // 40, and nine of the exponent γ ln(1 + …) ≤ 128: four of the quotient, four of the logarithm, one of γ. All values
     // of an integral share the peak's ten roundings. (1 − α)/(α ln 1/α) at γ = 1 and α = 1/1000.
     Promise { integral: INTEGRAL_F32 + 10.0 * U, ..promise("gtr", 1192.0, 144.63) },
+    // 40; ten of the exponent γ ln(1 + …), which is 192 at most, as D has 1/(α² cos⁴θm) before its power: four of the
+    // quotient, four of the logarithm, two of γ; and 45 of Λ, measured, which an integral's fixed direction has too.
+    Promise { integral: INTEGRAL_F32 + 45.0 * U, ..promise("student-t", 2005.0, 1.0) },
     // 40, and eleven of the exponent: four of its quotient, four of the logarithm, three of p. √π at α = 1.
     promise("blinn-phong", 1448.0, 1.7725),
     // 40; nine of D's exponent ≤ 128; of Λ's, 3.4 · 4 · 6.3 = 86 and six of 20 to 40, 180. An integral's fixed direction
@@ -129,7 +132,7 @@ const NORMALS: [Promise; 7] = [
 ];
 
 /// The energy with other maskings, where it is not 1: measured at the worst α where one direction grazes.
-const ENERGY: [(&str, &str, f64); 15] = [
+const ENERGY: [(&str, &str, f64); 22] = [
     ("ggx", "disney-clearcoat", 3.438),
     ("beckmann", "disney-clearcoat", 2.181),
     ("ggx-anisotropic", "disney-clearcoat", 22.56),
@@ -137,11 +140,18 @@ const ENERGY: [(&str, &str, f64); 15] = [
     ("gtr", "smith-separable", 144.63),
     ("gtr", "schlick-ggx", 144.63),
     ("gtr", "disney-clearcoat", 3.438),
+    ("gtr", "smith-joint-approx", 144.63),
+    ("student-t", "schlick-ggx", 2.80),
+    ("student-t", "schlick-ggx-direct", 2.80),
+    ("student-t", "ashikhmin-neubelt", 1.40),
+    ("student-t", "smith-joint-approx", 2.80),
+    ("student-t", "disney-clearcoat", 11.2),
     ("blinn-phong", "smith-separable", 1.345),
     ("blinn-phong", "disney-clearcoat", 3.438),
     ("charlie", "smith-separable", 2.72),
     // k = α/2 vanishes with α, and ρ grows without a bound.
     ("charlie", "schlick-ggx", f64::INFINITY),
+    ("charlie", "smith-joint-approx", f64::INFINITY),
     ("charlie", "schlick-ggx-direct", 16.9),
     ("charlie", "ashikhmin-neubelt", 5.67),
     ("charlie", "disney-clearcoat", 19.22),
@@ -195,6 +205,7 @@ fn parts(model: &str) -> Option<Parts> {
     let maskings = [
         "smith-correlated",
         "smith-separable",
+        "smith-joint-approx",
         "schlick-ggx-direct",
         "schlick-ggx",
         "v-cavity",
@@ -230,6 +241,12 @@ pub fn value_f32_at(model: &Model, setting: &Setting) -> f64 {
         "beckmann-anisotropic" => 700.0 + 730.0 * ratio_of_alphas(setting),
         // The exponent is γ ln 1/α² at most.
         "gtr" => 40.0 + 9.0 * (-2.0 * setting.parameters[0] * setting.alpha.ln()).min(128.0),
+        // The steepest slope is that of the least cosine.
+        "student-t" => {
+            let (gamma, alpha) = (setting.parameters[0], setting.alpha);
+            let steepest = 1.0 / ((gamma - 1.0) * (alpha * U).powi(2));
+            85.0 + 10.0 * (gamma * steepest.ln_1p()).min(192.0)
+        }
         _ => normals.roundings,
     };
     roundings * U + fresnel.0 * U
@@ -251,11 +268,6 @@ pub fn value_f64(model: &Model) -> f64 {
 /// f below which a model's errors are relative to it, sr⁻¹.
 pub fn floor(model: &Model) -> f64 {
     parts_of(model).normals.floor
-}
-
-/// The same of the f64 reference, which does not underflow.
-pub fn reference_floor(model: &Model) -> f64 {
-    if floor(model) == AXIS_FLOOR { AXIS_FLOOR } else { FLOOR }
 }
 
 /// The least tolerance of a model's integrals that f32 meets: of what reflects more than 1, as much more.
@@ -355,7 +367,7 @@ fn no_setting_promises_less_than_is_pinned() {
     // The last column is what the least tolerance of an integral is multiplied with. Of gtr the energy at the setting: in
     // closed form (1 − α)/(α ln 1/α) at γ = 1, and 4/α ∫ sin²θm D dθm elsewhere, here by arbitrary precision. Of unequal α a
     // twentieth of what values lose more than those of equal α, as measured: of α = 1 and 1/1000, (60 + 12 000)/72/20.
-    let rows: [(&str, f64, &[(&str, f64)], f64); 11] = [
+    let rows: [(&str, f64, &[(&str, f64)], f64); 13] = [
         ("ggx", 1e-6, &[], 1.0),
         ("ggx-anisotropic", 0.1, &[("aspect", 1.0)], 1.0),
         ("ggx-anisotropic", 0.1, &[("aspect", 0.25)], 1.0),
@@ -367,6 +379,8 @@ fn no_setting_promises_less_than_is_pinned() {
         ("gtr", 0.01, &[("gamma", 1.5)], 3.209_666_328_38),
         ("gtr", 0.5, &[("gamma", 2.0)], 1.0),
         ("gtr", 1e-3, &[("gamma", 10.0)], 1.0),
+        ("student-t", 0.5, &[("gamma", 3.0)], 1.0),
+        ("student-t", 1e-6, &[("gamma", 40.0)], 1.0),
     ];
     for (name, alpha, parameters, times) in rows {
         let (values, integrals, value) = at(name, alpha, parameters);

@@ -86,6 +86,7 @@ ROUGHNESS = ({"roughness": 0.01}, {"roughness": 0.1}, {"roughness": 0.5}, {"roug
 SIGMA = ({"sigma": 0.05}, {"sigma": 0.2}, {"sigma": 0.7}, {"sigma": 1.5})
 EON = tuple({**r, "albedo": a} for r, a in zip(ROUGHNESS, (0.18, 1.0, 0.9, 0.6)))
 GAMMA = ({"gamma": 1.0}, {"gamma": 1.5}, {"gamma": 2.0}, {"gamma": 5.0})
+STUDENT = ({"gamma": 1.6}, {"gamma": 2.0}, {"gamma": 5.0}, {"gamma": 40.0})
 AXES = (
     {"aspect": 4.0, "strength": 0.0},
     {"aspect": 0.25, "strength": 0.0},
@@ -144,10 +145,12 @@ def _models():
         rows = SLOPES if model.startswith("beckmann") else LOBES
         yield model, _with_alpha(rows, more)
         yield f"{model}-smith-separable-none", _with_alpha(rows, more)
+    for model in ("student-t", "student-t-smith-separable-none"):
+        yield model, _with_alpha(SLOPES, STUDENT)
     yield "gtr-disney-clearcoat-schlick", _with_alpha(LOBES, GAMMA[:1])
     for model in ("charlie", "charlie-smith-separable-none", "charlie-ashikhmin-neubelt-schlick"):
         yield model, _with_alpha(FIBRES)
-    masking = "smith-separable schlick-ggx schlick-ggx-direct v-cavity kelemen ashikhmin-neubelt disney-clearcoat none"
+    masking = "smith-separable schlick-ggx schlick-ggx-direct smith-joint-approx v-cavity kelemen ashikhmin-neubelt disney-clearcoat none"
     for mask in masking.split():
         yield f"ggx-{mask}-schlick", _with_alpha(LOBES)
     for term, more in FRESNEL.items():

@@ -67,11 +67,12 @@ def jobs():
         model = "mirror" if name == "schlick" else f"mirror-{name}"
         for parameters in cases.FRESNEL[name]:
             yield from (("mirror", model, parameters, theta) for theta in (0.0, 1.2, 1.5, None))
-    masks = "smith-separable schlick-ggx schlick-ggx-direct kelemen ashikhmin-neubelt disney-clearcoat"
+    masks = "smith-separable schlick-ggx schlick-ggx-direct smith-joint-approx kelemen ashikhmin-neubelt disney-clearcoat"
     for mask in masks.split():
         yield "normals", f"ggx-{mask}-schlick", {"alpha": 0.5}, 0.6
     for gamma in (1.0, 1.5, 3.0):
         yield "normals", "gtr", {"alpha": 0.5, "gamma": gamma}, 0.6
+    yield "normals", "student-t", {"alpha": 0.5, "gamma": 3.0}, 0.6
     yield from (("normals", "blinn", {"alpha": 0.5}, theta) for theta in (0.0, 1.2))
     yield "normals", "blinn-phong", {"alpha": 0.5}, 0.0
     for model in ("gltf_diffuse", "disney-sheen"):

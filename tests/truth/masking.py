@@ -28,6 +28,12 @@ def schlick_ggx_direct(pair, ndf):
     return _schlick(pair, (mp.sqrt(ndf.alpha) + 1) ** 2 / 8)
 
 
+def smith_joint_approx(pair, ndf):
+    """Hammon 2017: G2/(4 n·l n·v) = 0.5/mix(2 n·l n·v, n·l + n·v, α)."""
+    a, product = ndf.alpha, pair.mu_i * pair.mu_e
+    return 2 * product / ((1 - a) * 2 * product + a * (pair.mu_i + pair.mu_e))
+
+
 def v_cavity(pair, _):
     """Cook & Torrance 1982, section 4."""
     n_h, v_h = pair.cos_m, pair.cos_d
@@ -65,6 +71,7 @@ TERMS = {
     "smith-separable": smith_separable,
     "schlick-ggx": schlick_ggx,
     "schlick-ggx-direct": schlick_ggx_direct,
+    "smith-joint-approx": smith_joint_approx,
     "v-cavity": v_cavity,
     "kelemen": kelemen,
     "ashikhmin-neubelt": ashikhmin_neubelt,

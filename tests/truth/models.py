@@ -32,6 +32,7 @@ NDFS = {
     "beckmann": (ndf.Beckmann, ()),
     "blinn-phong": (ndf.BlinnPhong, ()),
     "gtr": (ndf.Gtr, ("gamma",)),
+    "student-t": (ndf.StudentT, ("gamma",)),
     "charlie": (ndf.Charlie, ()),
     "ggx-anisotropic": (ndf.GgxAnisotropic, ("aspect", "strength")),
     "beckmann-anisotropic": (ndf.BeckmannAnisotropic, ("aspect", "strength")),

@@ -82,6 +82,32 @@ class Gtr(Isotropic):
         return smith_ggx(self.alpha, tan_of(w))
 
 
+class StudentT(Isotropic):
+    """Ribardière et al. 2017: slopes (p, q) of density P22 = (γ − 1)^γ α^(2γ − 2)/(π ((γ − 1) α² + p² + q²)^γ)."""
+
+    def __init__(self, alpha, gamma):
+        super().__init__(alpha)
+        self.gamma = mpf(gamma)
+
+    def d(self, wm):
+        """P22/cos⁴θm."""
+        g, a = self.gamma, self.alpha
+        p22 = (g - 1) ** g * a ** (2 * g - 2) / (mp.pi * ((g - 1) * a**2 + tan_of(wm) ** 2) ** g)
+        return p22 / wm[2] ** 4
+
+    def smith(self, w):
+        """Λ = 1/c ∫_c^∞ (q − c) P2(q) dq, c = cot θ; P2 = ∫ P22 dp, as ∫ (B + p²)^(−γ) dp = √π Γ(γ − ½)/Γ(γ) B^(½ − γ)."""
+        if w[0] == 0 and w[1] == 0:
+            return mpf(0)
+        g, a, c = self.gamma, self.alpha, 1 / tan_of(w)
+        b = (g - 1) * a**2
+        scale = (g - 1) ** g * a ** (2 * g - 2) * mp.gamma(g - 0.5) / (mp.sqrt(mp.pi) * mp.gamma(g))
+        mean = (b + c**2) ** (mpf(3) / 2 - g) / (2 * g - 3)
+        # ∫_c^∞ (b + q²)^(½ − γ) dq, by powers of b/q²
+        beyond = c ** (2 - 2 * g) / (2 * g - 2) * mp.hyp2f1(g - 0.5, g - 1, g, -b / c**2)
+        return scale * (mean - c * beyond) / c
+
+
 class Charlie(Isotropic):
     """Estevez & Kulla 2017; α is 0.005 at least, as renderers have it (documented in the model)."""
 
