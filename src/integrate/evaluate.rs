@@ -53,7 +53,7 @@ fn integrate(rules: &RuleSet, inner: &InnerRule, lobe: &Lobe, row: usize, k: usi
         }
         InnerRule::Slopes(rule) => {
             let mu = rule.mus[k];
-            let map = rule.slopes.map(rule.tolerance);
+            let map = rule.map();
             for (azimuths, nodes) in rule.sides(row, k) {
                 for &[c, t_max, t_max_inverse, weight] in azimuths {
                     let end = (map.end)(t_max, setting);

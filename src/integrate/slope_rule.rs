@@ -1,15 +1,18 @@
 //! The warped rule of microfacet lobes: the azimuths and the node counts of each tile of texels.
 
 use crate::base::quadrature::{Node, gauss_legendre};
+use crate::base::tolerance::is_fine;
 use crate::model::parameters::Setting;
 use crate::model::slope_azimuths::side;
-use crate::model::{SlopeCounts, Slopes};
+use crate::model::{SlopeCounts, SlopeMap, Slopes};
 use std::collections::HashMap;
 
 /// The inner integrals in slopes of ωm, one for each (α, μ).
 pub(crate) struct SlopeRule {
     pub slopes: &'static Slopes,
     pub tolerance: f64,
+    /// Whether the tolerance is beyond f32: the fine map and its kernel are used then.
+    pub is_fine: bool,
     pub mus: Vec<f64>,
     /// The azimuths (μe c, t_max, 1/t_max, weight): for each column of a tile as many as the tile takes, one after the other.
     pub azimuths: Vec<[f64; 4]>,
@@ -34,6 +37,11 @@ pub(crate) const TILE_ALPHAS: usize = 4;
 pub(crate) const TILE_COLUMNS: usize = 8;
 
 impl SlopeRule {
+    /// The map of slopes that the tolerance takes.
+    pub fn map(&self) -> &'static SlopeMap {
+        if self.is_fine { &self.slopes.fine } else { &self.slopes.coarse }
+    }
+
     /// The rule for all (α, μ). Each texel takes `spare` azimuths and nodes more than its tolerance asks for.
     pub fn new(
         slopes: &'static Slopes,
@@ -74,7 +82,7 @@ impl SlopeRule {
                 tiles.push([(1.0, counts[0]), (-1.0, counts[1])].map(side));
             }
         }
-        Self { slopes, tolerance, mus, azimuths, nodes, tiles }
+        Self { slopes, tolerance, is_fine: is_fine(tolerance), mus, azimuths, nodes, tiles }
     }
 
     /// The azimuths of a texel, and the nodes that each of them takes, on both sides.

@@ -236,10 +236,10 @@ impl Stage {
                 };
                 let tiles: Vec<_> = rule.tiles.iter().map(|tile| tile.map(side)).collect();
                 let nodes: Vec<_> = rule.nodes.iter().map(|node| [node.x, node.weight, 0.0, 0.0]).collect();
-                if !is_fine(rule.tolerance) && nodes.len() > COARSE_NODES {
+                if !rule.is_fine && nodes.len() > COARSE_NODES {
                     return Err(Error::Internal(format!("{} nodes of coarse rules", nodes.len())));
                 }
-                let (kernel, nodes) = match is_fine(rule.tolerance) {
+                let (kernel, nodes) = match rule.is_fine {
                     false => (Kernel::Slopes, upload.uniforms(&nodes, COARSE_NODES)),
                     true => (Kernel::FineSlopes, upload.reals(nodes.as_flattened())),
                 };
