@@ -6,7 +6,6 @@ use crate::base::error::{Error, Result};
 use crate::base::half_angle::{Azimuth, Pair};
 use crate::base::precision::{INTEGRAL_F32, Precision};
 use crate::base::sequence::stride;
-use crate::base::tolerance::is_fine;
 use crate::integrate::chebyshev::Matrix;
 use crate::integrate::direction_rule::{DirectionRule, DirectionSum};
 use crate::integrate::rule_set::{InnerRule, RuleKind, RuleSet, ValueGrid};
