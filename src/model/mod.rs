@@ -75,7 +75,7 @@ pub struct Model {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Violation {
-    /// The promise, by its name in [`promises`](crate::verify).
+    /// The promise, by its name in [`verify`](crate::verify).
     pub property: &'static str,
     /// What the worst value may be.
     pub bound: f64,

@@ -320,7 +320,7 @@ fn materials_are_what_the_texts_say() {
     }
 }
 
-/// A film's F is the model's (tests/thin_film.rs has its formula); here: what it is of, and its share.
+/// A film's F is the model's (tests/suite/thin_film.rs has its formula); here: what it is of, and its share.
 #[test]
 fn a_film_is_mixed_by_its_factor() {
     let film =

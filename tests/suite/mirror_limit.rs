@@ -45,7 +45,7 @@ fn integrals_join_the_mirror_as_alpha_squared() {
 /// At θi = θe and δφ = 0, θm = 0 and D = 1/(π α²); 1 + 2Λ = √(1 + α² tan²θ) is the same for both, so that
 /// G2 = 1/√(1 + α² tan²θ): f = (1 − Fc) / (4 π α² μ² √(1 + α² tan²θ)), Fc = x⁵, x = 1 − μ
 /// (and 1 − x⁵ = μ (1 + x + x² + x³ + x⁴)). With μ ≥ 2⁻²⁴ that is the horizon too. A, and A + B, which has no Fresnel, are compared. The budget of a value is in `promises.rs`; the CPU path rounds to storage alone,
-/// plus what f64 loses of angles (as in tests/values.rs).
+/// plus what f64 loses of angles (as in tests/suite/values.rs).
 ///
 /// The f64 nearest to π is 1.2e-16 rad from the mirror direction, and a lobe of α = 1e-6 at the horizon shows
 /// it, by 2e-6: tan θm = sin θ sin(δφ/2)/μ.

@@ -10,7 +10,7 @@
 //! of each component (A, what F0 weighs, and B, what F90 does). The floor is 1e-30 sr⁻¹, or 2⁻¹⁰⁰ of A + B:
 //! below it f32 runs out of exponents.
 //!
-//! There is no search as in [`promises`](crate::verify): rounding is noise in the digits of an input and has
+//! There is no search as in [`verify`](crate::verify): rounding is noise in the digits of an input and has
 //! no slope to climb. The number of inputs decides how far the tail of it is seen.
 
 mod band;
