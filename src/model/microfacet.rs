@@ -5,7 +5,7 @@
 //! integrand; what is put together at run time is names.
 
 use crate::base::error::{Error, Result};
-use crate::base::half_angle::{Azimuth, HalfSums, Half, MU_MIN, Pair, sine};
+use crate::base::half_angle::{Azimuth, Half, HalfSums, MU_MIN, Pair, sine};
 use crate::model::directions;
 use crate::model::fresnel::conductor::Conductor;
 use crate::model::fresnel::dielectric::Dielectric;
