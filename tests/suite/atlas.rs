@@ -48,8 +48,13 @@ fn f32_is_as_near_to_f64_as_promised() {
             assert_eq!(band.non_finite, 0, "{}: {}", page.subject, worst.eval);
             // Half an ULP is at best what a rounded result is off by at most; the median is below 4 of them. Charlie's
             // is an exponential where the others are products, and nowhere 0: measured 7.6.
-            let most = if ["charlie", "gtr"].contains(&page.subject.as_str()) { 8.0 } else { 4.0 };
-            assert!(band.median <= most / (1 << 24) as f64, "{}: {}", page.subject, band.median);
+            // Student's D and Λ are powers, whose exponents multiply the roundings of their bases: measured 17.
+            let ulps = match page.subject.as_str() {
+                "charlie" | "gtr" => 8.0,
+                "student-t" => 20.0,
+                _ => 4.0,
+            };
+            assert!(band.median <= ulps / (1 << 24) as f64, "{}: {}", page.subject, band.median);
         }
         assert!(page.is_kept());
     }
