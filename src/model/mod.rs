@@ -31,7 +31,9 @@ pub use roughness::{Parameter, Roughness, Shape};
 use crate::base::error::{Error, Result};
 use crate::base::half_angle::{Azimuth, Pair};
 use crate::base::precision::INTEGRAL_F32;
-use crate::base::tolerance::{decade, is_fine};
+use crate::base::tolerance::decade;
+#[cfg(any(test, feature = "lab"))]
+use crate::base::tolerance::is_fine;
 use crate::model::directions::Map;
 use crate::model::parameters::{Parameters, Setting};
 use std::sync::{PoisonError, RwLock};
@@ -279,6 +281,7 @@ impl SlopeCounts {
     }
 }
 
+#[cfg(any(test, feature = "lab"))]
 impl Slopes {
     /// The map for a tolerance.
     pub(crate) fn map(&self, tolerance: f64) -> &SlopeMap {
