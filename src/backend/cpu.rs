@@ -1,7 +1,7 @@
 //! The CPU path: the same rules as the kernels, in f64, on all cores.
 
 #[cfg(feature = "batch")]
-use crate::base::error::Error;
+use crate::base::error::Result;
 use crate::integrate::evaluate;
 use crate::integrate::rule_set::{RuleKind, RuleSet};
 use crate::model::lobe::Lobe;
@@ -43,8 +43,8 @@ pub(crate) fn evaluate<E: Send>(
 pub(crate) fn stream(
     table: &TablePlan,
     tiles: &[std::ops::Range<usize>],
-    sink: &mut dyn FnMut(usize, &[f32]) -> Result<(), Error>,
-) -> Result<(), Error> {
+    sink: &mut dyn FnMut(usize, &[f32]) -> Result<()>,
+) -> Result<()> {
     let row = table.axes().last().map_or(1, |axis| axis.len()) * table.channels().len();
     let rule_sets: Vec<_> = table.lobes().iter().map(|lobe| (lobe, RuleSet::new(table, lobe))).collect();
     for (k, tile) in tiles.iter().enumerate() {

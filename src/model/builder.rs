@@ -153,7 +153,7 @@ impl ModelBuilder {
         {
             return refuse("a component's weight needs a word for a name and a finite default".into());
         }
-        if !(self.rho_bound > 0.0) {
+        if self.rho_bound.is_nan() || self.rho_bound <= 0.0 {
             return refuse(format!("a bound of {} on ρ_dh; give a number above 0", self.rho_bound));
         }
         if !(self.value_f32.is_finite() && self.value_f32 > 0.0) {

@@ -182,7 +182,7 @@ impl<'a> Sum<'a> {
     fn factor_error(&self) -> f64 {
         let low: Vec<_> = self.parameters.iter().map(|parameter| parameter.low).collect();
         let lobes = (self.lobes)(&low).unwrap_or_default();
-        let error = |lobe: &Lobe| match &lobe.factors()[..] {
+        let error = |lobe: &Lobe| match lobe.factors() {
             [] => 0.0,
             factors => LobeScale::new(factors, lobe.roughness()).error(),
         };

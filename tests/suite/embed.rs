@@ -120,7 +120,7 @@ fn what_a_format_cannot_hold_is_refused() {
     };
     let three = &material();
     for format in [TextureFormat::Rg16Float, TextureFormat::Rg32Float] {
-        assert_eq!(refusal(three, format), format!("table \"test\": {format:?} has no room for 3 channels"),);
+        assert_eq!(refusal(three, format), format!("table \"paint\": {format:?} has no room for 3 channels"),);
     }
     let values = &brdf(8);
     for format in [TextureFormat::Rg16Float, TextureFormat::Rgba16Float] {

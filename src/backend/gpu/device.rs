@@ -52,7 +52,7 @@ enum Owner {
     /// gonio: its handlers keep the first error here.
     Gonio {
         #[cfg_attr(not(feature = "batch"), allow(dead_code))]
-        adapter: Adapter,
+        adapter: Box<Adapter>,
         fault: Arc<Mutex<Option<String>>>,
     },
     /// A caller, whose handlers stay as they are: error scopes catch what gonio causes.
@@ -133,7 +133,7 @@ impl Adapter {
         Ok(Device {
             baker: Baker::new(&device, &queue),
             info: self.info.clone(),
-            owner: Owner::Gonio { adapter: self.clone(), fault },
+            owner: Owner::Gonio { adapter: Box::new(self.clone()), fault },
             canary: OnceLock::new(),
         })
     }

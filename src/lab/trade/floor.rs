@@ -31,7 +31,7 @@ impl Floor {
 /// a division and a root take several; what a compiler lifts out of the loop is none, nor what interpolates a table
 /// between its integrals. So it is a floor.
 pub(super) fn operations(plan: &TablePlan) -> Option<f64> {
-    let [lobe] = &plan.lobes()[..] else { return None };
+    let [lobe] = plan.lobes() else { return None };
     (lobe.model().name == "ggx").then_some(match plan.rule() {
         // ndf_map 12, slope_term 36 with masking 8 and Fresnel 4, the loop of `integral` 4
         Rule::Warped => 52.0,

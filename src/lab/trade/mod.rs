@@ -337,7 +337,7 @@ fn headline(
     let plan = |p: &Point| -> Result<TablePlan> {
         let (rule, tolerance) = candidates::setting(p.method, &p.setting)
             .ok_or_else(|| Error::Internal(format!("no method {} {}", p.method, p.setting)))?;
-        Ok(table.clone().with_rule(rule)?.with_tolerance(tolerance.unwrap_or(table.tolerance()))?)
+        table.clone().with_rule(rule)?.with_tolerance(tolerance.unwrap_or(table.tolerance()))
     };
     let (times, measured) = if theirs.extrapolated {
         ([ours, theirs].map(|p| vec![p.table_seconds]), false)

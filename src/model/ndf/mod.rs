@@ -156,10 +156,13 @@ impl Rule {
 /// masking that depends on ωm.
 #[derive(Clone, Copy)]
 pub(crate) struct Directions {
-    pub samples:
-        fn(&Fixed, &Setting, [SlopeCounts; 2], tolerance: f64, of_normal: Option<Kinks>) -> Vec<Sample>,
+    pub samples: SampleDirections,
     pub most: fn([SlopeCounts; 2], of_normal: Option<Kinks>) -> usize,
 }
+
+/// Directions for a fixed one and a setting, with node counts of both sides, for a tolerance.
+pub(crate) type SampleDirections =
+    fn(&Fixed, &Setting, [SlopeCounts; 2], tolerance: f64, of_normal: Option<Kinks>) -> Vec<Sample>;
 
 /// cos θ of directions and their weights in the mean ∫ ρ 2μ dμ, at a tolerance.
 pub(crate) type Mean = fn(tolerance: f64) -> Vec<Node>;
