@@ -31,7 +31,7 @@ pub use roughness::{Parameter, Roughness, Shape};
 use crate::base::error::{Error, Result};
 use crate::base::half_angle::{Azimuth, Pair};
 use crate::base::precision::INTEGRAL_F32;
-use crate::base::tolerance::{decade, is_fine};
+use crate::base::tolerance::decade;
 use crate::model::directions::Map;
 use crate::model::parameters::{Parameters, Setting};
 use std::sync::{PoisonError, RwLock};
@@ -281,8 +281,9 @@ impl SlopeCounts {
 
 impl Slopes {
     /// The map for a tolerance.
+    #[cfg(any(test, feature = "lab"))]
     pub(crate) fn map(&self, tolerance: f64) -> &SlopeMap {
-        if is_fine(tolerance) { &self.fine } else { &self.coarse }
+        if crate::base::tolerance::is_fine(tolerance) { &self.fine } else { &self.coarse }
     }
 }
 
