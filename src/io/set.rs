@@ -127,7 +127,6 @@ impl TableSet {
     ///
     /// # Errors
     /// As [`write`](Self::write).
-    #[cfg(feature = "cli")]
     pub(crate) fn add(&mut self, name: &str, bytes: &[u8]) -> Result<String> {
         self.refuse_foreign(name)?;
         save(&self.dir.join(STAGING).join(name), bytes)?;
