@@ -270,6 +270,12 @@ pub fn floor(model: &Model) -> f64 {
     parts_of(model).normals.floor
 }
 
+/// The same of the f64 reference, which does not underflow. It takes δφ, which is rounded to 1e-16: where cos γ of a lobe
+/// about an axis is small, f has that absolutely.
+pub fn reference_floor(model: &Model) -> f64 {
+    if floor(model) == AXIS_FLOOR { AXIS_FLOOR } else { FLOOR }
+}
+
 /// The least tolerance of a model's integrals that f32 meets: of what reflects more than 1, as much more.
 pub fn integral_f32(model: &Model) -> f64 {
     let energy = energy(model);
@@ -362,7 +368,9 @@ fn no_setting_promises_less_than_is_pinned() {
         let isotropic = [ThetaI, ThetaE, DeltaPhi].map(|variable| axis(variable, 2)).to_vec();
         let values = plan(&BRDF, if model.is_anisotropic() { all } else { isotropic });
         let setting = values.lobes()[0].setting_at(None).unwrap();
-        (values, plan(&RHO_DH, vec![axis(ThetaI, 2)]), value_f32_at(model, &setting))
+        let around = if model.is_anisotropic() { vec![axis(PhiI, 2)] } else { Vec::new() };
+        let integrals = plan(&RHO_DH, [vec![axis(ThetaI, 2)], around].concat());
+        (values, integrals, value_f32_at(model, &setting))
     };
     // The last column is what the least tolerance of an integral is multiplied with. Of gtr the energy at the setting: in
     // closed form (1 − α)/(α ln 1/α) at γ = 1, and 4/α ∫ sin²θm D dθm elsewhere, here by arbitrary precision. Of unequal α a
