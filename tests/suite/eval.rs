@@ -7,7 +7,6 @@ use crate::promises::{FLOOR, STORED_F32, VALUE_F32, value_f32};
 use gonio::bake::points::Points;
 use gonio::base::angles::{Angles, PHI_MAX};
 use gonio::check::Check;
-use gonio::model::MODELS;
 use gonio::model::lobe::Lobe;
 use gonio::model::{MICROFACETS, MIRRORS, MODELS};
 use gonio::plan::TablePlan;
