@@ -408,7 +408,7 @@ fn a_smooth_coat_reflects_its_fresnel_term() {
     for theta_e in [0.0f64, 0.8, 1.4] {
         let view = View { frame: Frame::new(0.5, 1.0), theta_e, phi_e: 0.3 };
         let reflected = 0.5 * (0.04 + 0.96 * (1.0 - theta_e.cos()).powi(5));
-        let lit = le(device(), &[coat.clone()], &light, &[view], 1e-4);
+        let lit = le(device(), std::slice::from_ref(&coat), &light, &[view], 1e-4);
         close3(lit[0].value, [2.0 * reflected; 3], 1e-9);
     }
 }

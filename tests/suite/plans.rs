@@ -136,7 +136,7 @@ fn plans_are_values() {
     let axes = vec![Axis::new(Variable::Mu, 4, [0.0, 1.0], Positions::Centers, Mapping::Linear).unwrap()];
     let table = TablePlan::basis("dfg", &SPLIT_SUM, model("ggx"), Some(0.5), axes.clone()).unwrap();
     assert_eq!(table.axes(), axes);
-    assert_eq!((table.rule(), &table.channels()[..]), (Rule::Warped, &["A".to_string(), "B".into()][..]));
+    assert_eq!((table.rule(), table.channels()), (Rule::Warped, &["A".to_string(), "B".into()][..]));
 }
 
 #[test]

@@ -375,7 +375,8 @@ fn no_setting_promises_less_than_is_pinned() {
     // The last column is what the least tolerance of an integral is multiplied with. Of gtr the energy at the setting: in
     // closed form (1 − α)/(α ln 1/α) at γ = 1, and 4/α ∫ sin²θm D dθm elsewhere, here by arbitrary precision. Of unequal α a
     // twentieth of what values lose more than those of equal α, as measured: of α = 1 and 1/1000, (60 + 12 000)/72/20.
-    let rows: [(&str, f64, &[(&str, f64)], f64); 13] = [
+    type PinnedSetting<'a> = (&'a str, f64, &'a [(&'a str, f64)], f64);
+    let rows: [PinnedSetting; 13] = [
         ("ggx", 1e-6, &[], 1.0),
         ("ggx-anisotropic", 0.1, &[("aspect", 1.0)], 1.0),
         ("ggx-anisotropic", 0.1, &[("aspect", 0.25)], 1.0),
