@@ -2,13 +2,13 @@
 
 use crate::base::error::Result;
 use crate::io::Provenance;
-use crate::io::draw::canvas::{Align, BLACK, Canvas, Color, Rect, GREY};
+use crate::io::draw::canvas::{Align, BLACK, Canvas, Color, GREY, Rect};
 use crate::io::draw::panel::{
     BAR, BELOW, LABEL_SIZE, LEFT, Shown, Slice, TICK_SIZE, axis_labels, color_bar, heat_map, ticks_below,
     ticks_left,
 };
 use crate::io::draw::scale;
-use crate::io::draw::scale::{ScaleKind, PlotScale};
+use crate::io::draw::scale::{PlotScale, ScaleKind};
 use crate::io::format::{Format, Streamed};
 use crate::table::axis::Axis;
 use crate::table::{ErrorKind, Table};
@@ -112,12 +112,7 @@ fn maps(table: &Table, x: usize, y: usize) -> Result<Vec<u8>> {
         axis_labels(&mut canvas, frame, &label_x, &label_y);
         let name = canvas.fit(&table.channels[c], LABEL_SIZE, side);
         canvas.text(&name, (frame.x + side / 2.0, frame.y - 16.0), LABEL_SIZE, Align::Center, BLACK);
-        color_bar(
-            &mut canvas,
-            Rect { x: frame.x + side + 14.0, w: 16.0, ..frame },
-            &scale,
-            &quantity(table),
-        );
+        color_bar(&mut canvas, Rect { x: frame.x + side + 14.0, w: 16.0, ..frame }, &scale, &quantity(table));
     }
     canvas.to_png(1)
 }
