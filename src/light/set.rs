@@ -1,6 +1,5 @@
 //! Writes tables of light as one set of files with a manifest.
 
-use crate::backend::gpu::Device;
 use crate::bake::Evaluator;
 use crate::base::error::Result;
 use crate::base::timings::Timings;
@@ -79,10 +78,10 @@ impl Order<'_> {
 
 /// What a manifest says of an evaluator.
 pub(crate) fn device_json(evaluator: &Evaluator) -> Value {
-    let json =
-        |device: &Device| json!({ "kind": device.kind(), "name": device.name(), "driver": device.driver() });
     match evaluator {
-        Evaluator::Device(device) => json(device),
+        Evaluator::Device(device) => {
+            json!({ "kind": device.kind(), "name": device.name(), "driver": device.driver() })
+        }
         Evaluator::Cpu => json!({ "kind": "CPU", "name": "cpu", "driver": "f64" }),
     }
 }
