@@ -124,6 +124,7 @@ pub(super) static BECKMANN: Model = Model {
 /// GTR with the defaults.
 pub(super) static GTR: Model = Model {
     summary: "generalised Trowbridge–Reitz microfacets, gamma = 1 Disney's clearcoat: f = F0·A + F90·B",
+    source: "Burley 2012, appendix B; Heitz 2014, eq. 99; Schlick 1994, eq. 15",
     parameters: Gtr::PARAMETERS,
     ..Made::<Gtr, SmithCorrelated, Schlick>::MODEL
 };
@@ -131,6 +132,7 @@ pub(super) static GTR: Model = Model {
 /// Student's t with the defaults.
 pub(super) static STUDENT_T: Model = Model {
     summary: "Student's t-distribution of slopes, height-correlated Smith of its own, Schlick: f = F0·A + F90·B",
+    source: "Ribardière et al. 2017; Heitz 2014, eq. 99; Schlick 1994, eq. 15",
     parameters: StudentT::PARAMETERS,
     ..Made::<StudentT, SmithCorrelated, Schlick>::MODEL
 };
@@ -138,12 +140,14 @@ pub(super) static STUDENT_T: Model = Model {
 /// Blinn–Phong with the defaults.
 pub(super) static BLINN_PHONG: Model = Model {
     summary: "Blinn–Phong microfacets, height-correlated Smith, Schlick: f = F0·A + F90·B",
+    source: "Walter et al. 2007, eq. 20 and 30; Heitz 2014, eq. 99; Schlick 1994, eq. 15",
     ..Made::<BlinnPhong, SmithCorrelated, Schlick>::MODEL
 };
 
 /// Charlie with the defaults.
 pub(super) static CHARLIE: Model = Model {
     summary: "Charlie's fibres for cloth, masked by their fit, Schlick: f = F0·A + F90·B",
+    source: "Estevez & Kulla 2017, eq. 2 to 4; Heitz 2014, eq. 99; Schlick 1994, eq. 15",
     ..Made::<Charlie, SmithCorrelated, Schlick>::MODEL
 };
 
@@ -524,6 +528,8 @@ mod tests {
             let masking = made.masking.as_ref().map(|masking| masking.name);
             let default = model::find(made.ndf.name).unwrap();
             assert_eq!(default.with_terms(masking, Some(made.fresnel.name)).unwrap(), model);
+            // What recipes call by its NDF's name alone names the sources of all its terms too.
+            assert!(model.name != default.name || model.source == default.source, "{}", model.name);
         }
         for model in MIRRORS.iter() {
             let fresnel = model.microfacet.unwrap().fresnel.name;
@@ -531,7 +537,6 @@ mod tests {
         }
         assert_eq!(GGX.with_terms(None, None).unwrap(), &GGX);
         assert_eq!(MICROFACETS[0].summary, GGX.summary);
-        assert_eq!(MICROFACETS[0].source, GGX.source);
     }
 
     /// The device keeps the rules of the coarse map in a uniform buffer of so many nodes, whichever a table takes.
