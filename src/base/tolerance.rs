@@ -10,6 +10,7 @@
 //! | interpolation between integrals | 1/8 of the rule's share along each axis (`CHEBYSHEV_SHARE`) | the rule at the sources and f32 rounding take the other 6/8 |
 //! | a lobe times factors | 1/100 of the rule's share (`FACTOR_SHARE`) | node counts are measured for the lobe alone; a factor bends ρ where the lobe does not: with counts of the full share a restored lobe is off by 9e-6 at 1e-6 |
 //! | the certificate's second rule | T/10 (`CERTIFY_RATIO`) | its own error then is a tenth of what it judges |
+//! | the reference of a sampled check | T/20 (`REFERENCE_SHARE`), all its digits with `Check::All` | a right table then measures at most T + T/20, and its integrals cost a tenth of those with all digits |
 //! | a texel that the certificate keeps | T/2 (`KEPT_SHARE`) | both rules may err towards each other |
 //! | energy above the declared bound | 2 T (`ENERGY_SLACK`) | two channels add up, each within T |
 //! | a layout's bilinear error | 0.98 T (`LAYOUT_MARGIN`) | the search tests points; the worst lies between them |
@@ -65,6 +66,10 @@ pub(crate) const FACTOR_SHARE: f64 = 0.01;
 
 /// The tolerance of the certificate's rule, in tolerances of the rule that it judges.
 pub(crate) const CERTIFY_RATIO: f64 = 0.1;
+
+/// The error of the reference's integrals, in tolerances, where a sample of texels is compared.
+#[cfg(feature = "check")]
+pub(crate) const REFERENCE_SHARE: f64 = 0.05;
 
 /// The largest difference between the two rules, in tolerances, at which a texel keeps its value.
 pub(crate) const KEPT_SHARE: f64 = 0.5;

@@ -60,7 +60,7 @@ pub(crate) fn measure(plan: &TablePlan, values: &Values, check: Check) -> Result
         .map(|point| {
             let plan_at_point = fine(plan, point.iter().map(|&x| vec![x]).collect(), FINE);
             let fast = evaluate(&plan_at_point);
-            let truth = check::reference(&plan_at_point, 0);
+            let truth = check::reference_within(&plan_at_point, 0, check::reference_error(plan, check));
             let read = look_up(plan.axes(), values, channels, point);
             (truth, fast, read)
         })

@@ -2,6 +2,7 @@
 
 use crate::base::angles::delta_phi;
 use crate::base::error::Result;
+use crate::base::tolerance::REFERENCE_SHARE;
 use crate::base::sequence::stride;
 use crate::check::reference::{ReferenceLobe, reference_of_model};
 use crate::model::lobe::Lobe;
@@ -35,6 +36,8 @@ pub(crate) struct Comparison<'a> {
     table: &'a TablePlan,
     /// The texels to compare, sorted; `None`: all of them.
     sample: Option<Vec<usize>>,
+    /// The absolute error that the reference's integrals may have.
+    reference_error: f64,
     tally: ErrorTally,
 }
 
@@ -46,8 +49,9 @@ impl<'a> Comparison<'a> {
             Check::All => None,
             Check::Sample(n) => Some(sample(&table.shape(), n)),
         };
+        let reference_error = reference_error(table, check);
         let tally = ErrorTally::new(table.unmeasured(estimate));
-        Self { table, sample, tally }
+        Self { table, sample, reference_error, tally }
     }
 
     /// Compares the texels of `piece`; `value` returns the piece's values, counted from 0. The next piece must begin where
@@ -71,7 +75,7 @@ impl<'a> Comparison<'a> {
         let compared = texels
             .par_iter()
             .map(|&texel| {
-                let truth = reference(table, texel);
+                let truth = reference_within(table, texel, self.reference_error);
                 let values = ((texel - piece.start) * channels..).map(value);
                 let channels: Vec<_> =
                     truth.into_iter().zip(values).map(|(truth, value)| (value, truth)).collect();
@@ -134,8 +138,21 @@ impl ErrorTally {
     }
 }
 
+/// The absolute error that the reference's integrals may have in a check of a table.
+pub(crate) fn reference_error(table: &TablePlan, check: Check) -> f64 {
+    match check {
+        Check::All => 0.0,
+        Check::Sample(_) => REFERENCE_SHARE * table.tolerance(),
+    }
+}
+
 /// Computes the channels of one texel by the reference; NaN where the reference has no value.
 pub fn reference(table: &TablePlan, texel: usize) -> Vec<f64> {
+    reference_within(table, texel, 0.0)
+}
+
+/// The same with integrals to an absolute error of `error` for each lobe of weight 1.
+pub(crate) fn reference_within(table: &TablePlan, texel: usize, error: f64) -> Vec<f64> {
     let coordinates: BTreeMap<_, _> = table
         .axes()
         .iter()
@@ -144,7 +161,7 @@ pub fn reference(table: &TablePlan, texel: usize) -> Vec<f64> {
         .collect();
     let mut channels = vec![0.0; table.channels().len()];
     for lobe in table.lobes() {
-        let [a, b] = reference_components(table.quantity(), lobe, &coordinates);
+        let [a, b] = reference_components(table.quantity(), lobe, &coordinates, error);
         for (channel, [weight_a, weight_b]) in channels.iter_mut().zip(lobe.weights()) {
             *channel += weight_a * a + weight_b * b;
         }
@@ -154,9 +171,14 @@ pub fn reference(table: &TablePlan, texel: usize) -> Vec<f64> {
 
 /// Computes the components (A, B) of a lobe at a texel's coordinates by the reference; NaN where the reference has no
 /// value, which no comparison calls right.
-fn reference_components(quantity: &Quantity, lobe: &Lobe, coordinates: &BTreeMap<Variable, f64>) -> [f64; 2] {
+fn reference_components(
+    quantity: &Quantity,
+    lobe: &Lobe,
+    coordinates: &BTreeMap<Variable, f64>,
+    error: f64,
+) -> [f64; 2] {
     let get = |variable| coordinates.get(&variable).copied();
-    let Some(reference) = ReferenceLobe::new(lobe, get(Variable::Roughness)) else { return [f64::NAN; 2] };
+    let Some(reference) = ReferenceLobe::within(lobe, get(Variable::Roughness), error) else { return [f64::NAN; 2] };
     let theta_i = get(Variable::ThetaI).unwrap_or(0.0);
     let phi_i = get(Variable::PhiI).unwrap_or(0.0);
     match quantity.evaluation {

@@ -17,12 +17,12 @@ pub(super) struct ReferenceScale {
 
 impl ReferenceScale {
     /// The scale of a lobe, in a row of roughness `swept` if the table has a roughness axis; `None` where an albedo has no
-    /// reference.
-    pub fn new(lobe: &Lobe, swept: Option<f64>) -> Option<Self> {
+    /// reference. Its integrals have an absolute error of `error` at most.
+    pub fn new(lobe: &Lobe, swept: Option<f64>, error: f64) -> Option<Self> {
         let row = swept.or(lobe.roughness());
         let with_curve = |factor: &Factor| {
             let curve = match factor.albedo() {
-                Some(albedo) => Some(ReferenceCurve::new(albedo, row)?),
+                Some(albedo) => Some(ReferenceCurve::new(albedo, row, CURVE_SHARE * error)?),
                 None => None,
             };
             Some((factor.clone(), curve))
@@ -78,42 +78,56 @@ impl ReferenceScale {
     pub fn rho_hh(&self, lobe: &dyn Reference, setting: &Setting) -> [f64; 2] {
         let alphas = self.factors.iter().filter_map(|(_, curve)| Some(curve.as_ref()?.setting.alpha()));
         let alpha = alphas.fold(setting.alpha(), f64::max);
-        mean_of_rho_dh(|mu| self.rho_dh(lobe, mu, setting, FixedDirection::Incident), alpha)
+        mean_of_rho_dh(setting, alpha, |mu, error| {
+            self.rho_dh(lobe, mu, &setting.within(error), FixedDirection::Incident)
+        })
     }
 }
 
-/// The albedo E(μ) by octaves of μ. Each octave is a polynomial through as many values as 1e-11 takes, computed when it is
-/// first asked for.
+/// The share of a scaled lobe's error that its albedos may have: 1 − E divides by 1 − E_avg, and a polynomial amplifies the
+/// errors of its values.
+const CURVE_SHARE: f64 = 0.02;
+
+/// The albedo E(μ) by octaves of μ. Each octave is a polynomial through as many values as its error takes, computed when it
+/// is first asked for.
 struct ReferenceCurve {
     reference: &'static dyn Reference,
     setting: Setting,
-    octaves: [OnceLock<[f64; DEGREE + 1]>; OCTAVES],
+    /// The number of values of an octave.
+    points: usize,
+    octaves: [OnceLock<Vec<f64>>; OCTAVES],
     mean: OnceLock<f64>,
 }
 
 /// The number of octaves, from 2⁻²⁴ to 1.
 const OCTAVES: usize = 24;
-/// The degree of an octave's polynomial. E has branch points near ±iα and at 0: seen from an octave they are 5.8 of its ellipses away or more, and
-/// 5.8⁻¹⁵ = 3e-12.
-const DEGREE: usize = 15;
+/// The decay of an octave's Chebyshev coefficients: E has branch points near ±iα and at 0, which are on the ellipse of this
+/// parameter or beyond.
+const ELLIPSE: f64 = 5.8;
+/// The most values of an octave: 5.8⁻¹⁵ = 3e-12.
+const MOST_POINTS: usize = 16;
 /// The number of curves that are kept.
 const CURVES_KEPT: usize = 512;
 
-/// The key of a curve: a model, the bits of its measure of a roughness, and those of its parameters.
-type Key = (&'static str, u64, [u64; 8]);
+/// The key of a curve: a model, and the bits of its measure of a roughness, of its error and of its parameters.
+type Key = (&'static str, u64, u64, [u64; 8]);
 static CURVES: LazyLock<Mutex<HashMap<Key, Arc<ReferenceCurve>>>> = LazyLock::new(Mutex::default);
 
 impl ReferenceCurve {
-    fn new(albedo: &Albedo, row: Option<f64>) -> Option<Arc<Self>> {
+    fn new(albedo: &Albedo, row: Option<f64>, error: f64) -> Option<Arc<Self>> {
         let (reference, setting) = reference_of_albedo(albedo, row)?;
-        let key = (albedo.model.name, setting.alpha().to_bits(), albedo.parameters.map(f64::to_bits));
+        let setting = setting.within(error);
+        let measure = setting.alpha().to_bits();
+        let key = (albedo.model.name, measure, error.to_bits(), albedo.parameters.map(f64::to_bits));
+        // One more than the decay asks for: the coefficients begin at 1 and more.
+        let points = ((-error.max(f64::MIN_POSITIVE).ln() / ELLIPSE.ln()).ceil() as usize + 2).min(MOST_POINTS);
         let mut curves = CURVES.lock().unwrap_or_else(PoisonError::into_inner);
         if curves.len() >= CURVES_KEPT {
             curves.clear();
         }
         let new = || {
             let octaves = std::array::from_fn(|_| OnceLock::new());
-            Arc::new(Self { reference, setting, octaves, mean: OnceLock::new() })
+            Arc::new(Self { reference, setting, points, octaves, mean: OnceLock::new() })
         };
         Some(curves.entry(key).or_insert_with(new).clone())
     }
@@ -128,9 +142,10 @@ impl ReferenceCurve {
         let mu = mu.clamp(MIN_MU, 1.0);
         let octave = ((-mu.log2()).floor() as usize).min(OCTAVES - 1);
         let high = 0.5f64.powi(octave as i32);
-        let point = |k: usize| (PI * (k as f64 + 0.5) / (DEGREE as f64 + 1.0)).cos();
+        let angle = |k: usize| PI * (k as f64 + 0.5) / self.points as f64;
+        let point = |k: usize| angle(k).cos();
         let values = self.octaves[octave]
-            .get_or_init(|| std::array::from_fn(|k| self.exact(high * (0.75 + 0.25 * point(k)))));
+            .get_or_init(|| (0..self.points).map(|k| self.exact(high * (0.75 + 0.25 * point(k)))).collect());
         // Lagrange's polynomial, by the barycentric formula for Chebyshev points of the first kind.
         let x = (mu / high - 0.75) / 0.25;
         let (mut above, mut below) = (0.0, 0.0);
@@ -140,7 +155,7 @@ impl ReferenceCurve {
                 return *value;
             }
             let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
-            let weight = sign * (PI * (k as f64 + 0.5) / (DEGREE as f64 + 1.0)).sin() / distance;
+            let weight = sign * angle(k).sin() / distance;
             above += weight * value;
             below += weight;
         }
@@ -149,7 +164,9 @@ impl ReferenceCurve {
 
     /// The mean albedo E_avg.
     fn mean(&self) -> f64 {
-        *self.mean.get_or_init(|| mean_of_rho_dh(|mu| [self.albedo(mu), 0.0], self.setting.alpha())[0])
+        *self.mean.get_or_init(|| {
+            mean_of_rho_dh(&self.setting, self.setting.alpha(), |mu, _| [self.albedo(mu), 0.0])[0]
+        })
     }
 }
 
@@ -164,7 +181,7 @@ mod tests {
         let model = model::find("ggx-smith-correlated-none").unwrap();
         for alpha in [1e-4, 0.01, 0.3, 1.0] {
             let albedo = Albedo { model, roughness: Some(f64::sqrt(alpha)), parameters: model.defaults() };
-            let curve = ReferenceCurve::new(&albedo, None).unwrap();
+            let curve = ReferenceCurve::new(&albedo, None, 0.0).unwrap();
             for mu in [1e-7, 3e-5, 2.1e-3, 0.0123, 0.26, 0.71, 0.987] {
                 let error = (curve.albedo(mu) - curve.exact(mu)).abs();
                 assert!(error <= 1e-10, "α = {alpha}, μ = {mu}: {error:e}");

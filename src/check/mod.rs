@@ -11,7 +11,7 @@ pub use crate::base::precision::VALUE_FLOOR;
 pub use crate::table::Check;
 #[cfg(feature = "batch")]
 pub(crate) use cross_check::Comparison;
-pub(crate) use cross_check::{ErrorTally, sample};
+pub(crate) use cross_check::{ErrorTally, reference_error, reference_within, sample};
 pub use cross_check::{cross_check, reference};
 pub(crate) use reference::{ReferenceLobe, reference_angles, reference_parameters};
 pub use reference::{reference_of_model, register_reference};

@@ -68,15 +68,22 @@ pub(crate) struct ReferenceLobe {
 }
 
 impl ReferenceLobe {
-    /// The lobe at its own roughness, or at `swept`, that of a table's row. `None` where its model, or one that a factor is
-    /// made of, has no reference, or the reference refuses the roughness or a parameter.
-    pub fn new(lobe: &Lobe, swept: Option<f64>) -> Option<Self> {
+    /// The lobe at its own roughness, or at `swept`, that of a table's row, with all the digits that its integrals reach.
+    /// `None` where its model, or one that a factor is made of, has no reference, or the reference refuses the roughness or
+    /// a parameter.
+    pub fn exact(lobe: &Lobe, swept: Option<f64>) -> Option<Self> {
+        Self::within(lobe, swept, 0.0)
+    }
+
+    /// The same with integrals to an absolute error of `error`.
+    pub fn within(lobe: &Lobe, swept: Option<f64>, error: f64) -> Option<Self> {
         let reference = reference_of_model(lobe.model())?;
         let parameters = reference_parameters(lobe.model(), &lobe.parameters()).ok()?;
         let setting = Setting::new(reference.measure(), swept.or(lobe.roughness()), &parameters).ok()?;
+        let setting = setting.within(error);
         let scale = match lobe.factors()[..] {
             [] => None,
-            _ => Some(ReferenceScale::new(lobe, swept)?),
+            _ => Some(ReferenceScale::new(lobe, swept, error)?),
         };
         Some(Self { reference, setting, scale })
     }
@@ -160,8 +167,8 @@ mod tests {
         let ggx = model::find("ggx").unwrap();
         let lobe = Lobe::new(ggx, None, vec![[1.0; 2]]).unwrap();
         for roughness in [Some(7.0), Some(-0.5), Some(f64::NAN), None] {
-            assert!(ReferenceLobe::new(&lobe, roughness).is_none());
+            assert!(ReferenceLobe::exact(&lobe, roughness).is_none());
         }
-        assert!(ReferenceLobe::new(&lobe, Some(0.5)).is_some());
+        assert!(ReferenceLobe::exact(&lobe, Some(0.5)).is_some());
     }
 }

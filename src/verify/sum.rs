@@ -194,7 +194,7 @@ impl<'a> Sum<'a> {
         let mut rho = [0.0; CHANNELS];
         for lobe in &(self.lobes)(setting).ok()? {
             let mu = theta_i.cos().max(0.0);
-            let [a, b] = ReferenceLobe::new(lobe, None)?.rho_dh(mu, 0.0, FixedDirection::Incident);
+            let [a, b] = ReferenceLobe::exact(lobe, None)?.rho_dh(mu, 0.0, FixedDirection::Incident);
             for (rho, [weight_a, weight_b]) in rho.iter_mut().zip(lobe.weights()) {
                 *rho += weight_a * a + weight_b * b;
             }
@@ -223,7 +223,7 @@ impl<'a> Sum<'a> {
 fn references_of(lobes: &[Lobe]) -> Option<Vec<ReferenceLobe>> {
     let reference = |lobe: &Lobe| match lobe.model().refused(&lobe.parameters()) {
         Some(_) => None,
-        None => ReferenceLobe::new(lobe, None),
+        None => ReferenceLobe::exact(lobe, None),
     };
     lobes.iter().map(reference).collect()
 }

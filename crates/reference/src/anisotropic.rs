@@ -20,8 +20,10 @@ pub(crate) struct Anisotropic {
     pub fresnel: &'static dyn Fresnel,
 }
 
-/// Of ρ_dh, absolute.
-const TOLERANCE: f64 = 1e-9;
+/// The absolute error that ρ_dh reaches.
+const FINEST: f64 = 1e-9;
+/// The absolute error that ρ_hh reaches.
+const FINEST_MEAN: f64 = 1e-7;
 /// The integral over θm is noise to the one over φ, so it has to be finer by this factor.
 const FINER: f64 = 0.1;
 /// The integrands vary on the scale 1 in u and in v.
@@ -48,19 +50,19 @@ impl Reference for Anisotropic {
     }
 
     fn rho_dh_at(&self, mu: f64, phi: f64, setting: &Setting) -> [f64; 2] {
-        self.rho_dh_within(TOLERANCE, mu, phi, setting)
+        self.rho_dh_within(setting.tolerance(FINEST), mu, phi, setting)
     }
 
     fn rho_hh(&self, setting: &Setting) -> [f64; 2] {
-        let mean = |mu: f64| {
+        let mean = |mu: f64, tolerance: f64| {
             let term = |k: u32| {
                 let phi = FRAC_PI_2 * f64::from(k) / f64::from(AZIMUTHS);
                 let weight = if k == 0 || k == AZIMUTHS { 0.5 } else { 1.0 } / f64::from(AZIMUTHS);
-                self.rho_dh_within(1e-7 / mu, mu, phi, setting).map(|rho| weight * rho)
+                self.rho_dh_within(tolerance, mu, phi, setting).map(|rho| weight * rho)
             };
             (0..=AZIMUTHS).map(term).fold([0.0; 2], |sum, rho| [sum[0] + rho[0], sum[1] + rho[1]])
         };
-        definition::rho_hh_within(1e-7, mean, setting.alpha)
+        definition::rho_hh_within(setting.tolerance(FINEST_MEAN), setting.alpha, mean)
     }
 
     fn factors(&self, angles: &Angles, setting: &Setting) -> Option<Factors> {
@@ -106,14 +108,17 @@ impl Anisotropic {
         }
         let ratio = (axes[0] / axes[1]).min(axes[1] / axes[0]);
         let narrow = if axes[0] < axes[1] { FRAC_PI_2 } else { 0.0 };
-        // φm − φ = ±π/2 + μ sinh u: the horizon turns there; and D does at the axis of the larger α.
+        // About the axis of the larger α, D falls with the square of the azimuth from the width of its peak on: a rule that
+        // is asked for little would not see so thin a layer, and its tails are percents.
+        let widths = || std::iter::successors(Some(ratio), |width| Some(6.0 * width)).take_while(|&width| width < 1.0);
+        // φm − φ = ±π/2 + μ sinh u: the horizon turns there.
         let reach = (FRAC_PI_2 / mu).asinh();
         let mut sum = [0.0; 2];
         for centre in [FRAC_PI_2, -FRAC_PI_2] {
             let mut breaks = even_breaks(-reach, reach, PANEL);
             for turn in [-2.0, -1.0, 0.0, 1.0, 2.0] {
-                for width in [-30.0, -10.0, -3.0, -1.0, 0.0, 1.0, 3.0, 10.0, 30.0] {
-                    let offset = narrow + turn * PI - phi + width * ratio - centre;
+                for width in widths().flat_map(|width| [-width, width]) {
+                    let offset = narrow + turn * PI - phi + width - centre;
                     if offset.abs() < FRAC_PI_2 {
                         breaks.push((offset / mu).asinh());
                     }
@@ -180,7 +185,7 @@ impl Anisotropic {
 }
 
 /// [αx, αy].
-fn axes(&Setting { alpha, parameters }: &Setting) -> [f64; 2] {
+fn axes(&Setting { alpha, parameters, .. }: &Setting) -> [f64; 2] {
     let [aspect, strength] = [parameters.aspect, parameters.strength];
     // With a strength, no α is below 1e-6.
     let alpha = if strength > 0.0 { alpha.max(1e-6) } else { alpha };

@@ -76,7 +76,7 @@ pub trait Reference: Sync {
 
     /// ρ_hh = 2 ∫ ρ_dh(μ) μ dμ over [0, 1].
     fn rho_hh(&self, setting: &Setting) -> [f64; 2] {
-        definition::rho_hh(|mu| self.rho_dh(mu, setting), setting.alpha)
+        definition::rho_hh(setting, setting.alpha, |mu, error| self.rho_dh(mu, &setting.within(error)))
     }
 
     /// ρ_dh of f times a factor of the other direction's cosine.
@@ -85,7 +85,7 @@ pub trait Reference: Sync {
             let factor = factor(angles.theta_e.cos());
             self.brdf(angles, setting).unwrap_or([f64::NAN; 2]).map(|f| f * factor)
         };
-        definition::rho_dh_kinked(f, mu)
+        definition::rho_dh_kinked(f, mu, setting)
     }
 
     /// The factors of a microfacet model; `None` for any other, and where [`Reference::brdf`] is `None`.

@@ -32,19 +32,19 @@ impl Reference for Microfacet {
     }
 
     fn rho_dh(&self, mu: f64, setting: &Setting) -> [f64; 2] {
-        self.rho_dh_within(TOLERANCE, mu, setting, &|_| 1.0)
+        self.rho_dh_within(setting.tolerance(FINEST), mu, setting, &|_| 1.0)
     }
 
     fn rho_dh_times(&self, mu: f64, setting: &Setting, factor: &dyn Fn(f64) -> f64) -> [f64; 2] {
-        self.rho_dh_within(TOLERANCE, mu, setting, factor)
+        self.rho_dh_within(setting.tolerance(FINEST), mu, setting, factor)
     }
 
-    /// As the mean weighs ρ with 2μ, ρ may be the coarser the smaller μ is.
     fn rho_hh(&self, setting: &Setting) -> [f64; 2] {
         if self.is_mirror(setting) && self.mirror(0.5, setting) == 1.0 {
             return self.fresnel.mean(&setting.parameters);
         }
-        definition::rho_hh(|mu| self.rho_dh_within(TOLERANCE / mu, mu, setting, &|_| 1.0), setting.alpha)
+        let rho_dh = |mu: f64, tolerance: f64| self.rho_dh_within(tolerance, mu, setting, &|_| 1.0);
+        definition::rho_hh(setting, setting.alpha, rho_dh)
     }
 
     fn factors(&self, angles: &Angles, setting: &Setting) -> Option<Factors> {
@@ -52,8 +52,8 @@ impl Reference for Microfacet {
     }
 }
 
-/// Of ρ_dh, absolute.
-const TOLERANCE: f64 = 1e-11;
+/// The absolute error that ρ_dh reaches.
+const FINEST: f64 = 1e-11;
 
 /// The integral over θm is noise to the one over φ, so it has to be finer by this factor.
 const FINER: f64 = 0.1;
@@ -137,7 +137,7 @@ impl Microfacet {
         factor: &dyn Fn(f64) -> f64,
     ) -> [f64; 2] {
         // The scale of v, of a lobe that is no peak at α = 0 any.
-        let &Setting { alpha, ref parameters } = setting;
+        let &Setting { alpha, ref parameters, .. } = setting;
         let scale = if self.ndf.is_mirror_at_0() { alpha } else { 1.0 };
         let wo = DVec3::new(sin_of(mu), 0.0, mu);
         let lambda_o = self.ndf.lambda((wo.x / wo.z).powi(2), alpha, parameters);
@@ -196,7 +196,7 @@ mod tests {
         let centre = |k: usize| (k as f64 + 0.5) / 8.0;
         for (mu, roughness) in (0..64).map(|k| (centre(k % 8), centre(k / 8))) {
             let at = |tolerance| ggx.rho_dh_within(tolerance, mu, &(roughness * roughness).into(), &|_| 1.0);
-            let ([a, b], [c, d]) = (at(TOLERANCE), at(0.01 * TOLERANCE));
+            let ([a, b], [c, d]) = (at(FINEST), at(0.01 * FINEST));
             let error = (a - c).abs().max((b - d).abs());
             assert!(error <= 1e-11, "μ = {mu}, roughness {roughness}: {error:e}");
         }

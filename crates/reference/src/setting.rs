@@ -3,12 +3,15 @@
 use crate::measure::Measure;
 use std::fmt;
 
-/// A roughness in a model's own measure, and the rest of its parameters; checked when it is made.
+/// A roughness in a model's own measure, the rest of its parameters, and the error that integrals may have; checked when
+/// it is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setting {
     /// α of microfacets, σ of Oren–Nayar, …; 0 of a model that takes no roughness.
     pub(crate) alpha: f64,
     pub(crate) parameters: Parameters,
+    /// The absolute error that an integral may have; 0: as little as the model's integrals reach.
+    error: f64,
 }
 
 impl Setting {
@@ -17,7 +20,7 @@ impl Setting {
     /// # Errors
     /// When the model takes a roughness and there is none, or it is not in [0, 1].
     pub fn new(measure: Measure, roughness: Option<f64>, parameters: &Parameters) -> Result<Self, Refused> {
-        Ok(Self { alpha: measure.of_roughness(roughness)?, parameters: *parameters })
+        Ok(Self { alpha: measure.of_roughness(roughness)?, parameters: *parameters, error: 0.0 })
     }
 
     /// The same at a value of the measure itself: α, σ, ….
@@ -25,7 +28,19 @@ impl Setting {
     /// # Errors
     /// When it is outside the measure's range.
     pub fn measured(measure: Measure, value: f64, parameters: &Parameters) -> Result<Self, Refused> {
-        Ok(Self { alpha: measure.checked(value)?, parameters: *parameters })
+        Ok(Self { alpha: measure.checked(value)?, parameters: *parameters, error: 0.0 })
+    }
+
+    /// The same with integrals to an absolute error of `error`, which is quicker than all the digits that there are. A
+    /// second rule certifies each: the one of Gauss within Kronrod's.
+    #[must_use]
+    pub fn within(self, error: f64) -> Self {
+        Self { error, ..self }
+    }
+
+    /// The tolerance of an integral that reaches `finest`.
+    pub(crate) fn tolerance(&self, finest: f64) -> f64 {
+        self.error.max(finest)
     }
 
     /// The roughness in the model's own measure.
@@ -192,7 +207,7 @@ impl std::error::Error for Refused {}
 #[cfg(test)]
 impl From<f64> for Setting {
     fn from(alpha: f64) -> Self {
-        Self { alpha, parameters: Parameters::DEFAULT }
+        Self { alpha, parameters: Parameters::DEFAULT, error: 0.0 }
     }
 }
 

@@ -81,7 +81,7 @@ fn relative_difference(value: &[f32], reference: &[f64]) -> f64 {
 }
 
 fn factors(lobe: &Lobe, angles: &Angles) -> Option<LobeFactors> {
-    let factors = ReferenceLobe::new(lobe, None)?.factors(&reference_angles(angles))?;
+    let factors = ReferenceLobe::exact(lobe, None)?.factors(&reference_angles(angles))?;
     let f = |&[a, b]: &[f64; 2]| a * factors.f[0] + b * factors.f[1];
     let f = lobe.weights().iter().map(f).collect();
     Some(LobeFactors { model: lobe.model().name, d: factors.d, g2: factors.g2, f })

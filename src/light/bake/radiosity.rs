@@ -70,7 +70,7 @@ impl Order<'_> {
     /// M of some texels by the reference.
     fn radiosity_truths(&self, axes: &[Axis; 2], lobes: &[Lobe]) -> Result<Truths> {
         let references: Option<Vec<_>> =
-            lobes.iter().map(|lobe| Some((lobe, ReferenceLobe::new(lobe, None)?))).collect();
+            lobes.iter().map(|lobe| Some((lobe, ReferenceLobe::exact(lobe, None)?))).collect();
         let Some(references) = references.filter(|_| self.check != Check::Sample(0)) else {
             return Ok(Vec::new());
         };

@@ -28,8 +28,8 @@ impl Reference for Diffuse {
         Some(diffuse(angles))
     }
 
-    fn rho_dh(&self, mu: f64, _: &Setting) -> [f64; 2] {
-        definition::rho_dh(diffuse, mu)
+    fn rho_dh(&self, mu: f64, setting: &Setting) -> [f64; 2] {
+        definition::rho_dh(diffuse, mu, setting)
     }
 }
 

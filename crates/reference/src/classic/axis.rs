@@ -23,8 +23,8 @@ pub(crate) struct Axis {
     pub scale: f64,
 }
 
-/// Of ρ_dh, absolute.
-const TOLERANCE: f64 = 1e-11;
+/// The absolute error that ρ_dh reaches.
+const FINEST: f64 = 1e-11;
 
 /// The integral over γ is noise to the one over ψ, so it has to be finer.
 const FINER: f64 = 0.1;
@@ -71,7 +71,7 @@ impl Reference for AboutAxis {
     }
 
     fn rho_dh(&self, mu: f64, s: &Setting) -> [f64; 2] {
-        self.rho(mu, s, TOLERANCE, &|_| 1.0)
+        self.rho(mu, s, s.tolerance(FINEST), &|_| 1.0)
     }
 
     /// 2 ∫ ρ μ dμ with μ = w². ρ changes where μ ~ α, as the lobe meets the horizon, and where an axis of another length
@@ -85,13 +85,15 @@ impl Reference for AboutAxis {
         let mut far: Vec<_> = scales().map(f64::cos).map(f64::sqrt).collect();
         far.reverse();
         let breaks: Vec<_> = [0.0].into_iter().chain(near).chain(far).chain([1.0]).collect();
-        let weighted =
-            |w: f64| self.rho(w * w, s, TOLERANCE / (w * w), &|_| 1.0).map(|rho| 4.0 * w.powi(3) * rho);
-        integrate(weighted, &breaks, 10.0 * TOLERANCE).value_or_nan()
+        let tolerance = s.tolerance(10.0 * FINEST);
+        let weighted = |w: f64| {
+            self.rho(w * w, s, 0.1 * tolerance / (w * w), &|_| 1.0).map(|rho| 4.0 * w.powi(3) * rho)
+        };
+        integrate(weighted, &breaks, tolerance).value_or_nan()
     }
 
     fn rho_dh_times(&self, mu: f64, s: &Setting, factor: &dyn Fn(f64) -> f64) -> [f64; 2] {
-        self.rho(mu, s, 10.0 * TOLERANCE, factor)
+        self.rho(mu, s, s.tolerance(10.0 * FINEST), factor)
     }
 }
 

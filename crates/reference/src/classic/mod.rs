@@ -22,8 +22,8 @@ pub(crate) struct Classic {
     smooth: fn(f64) -> [f64; 2],
 }
 
-/// Of ρ_dh, absolute.
-const TOLERANCE: f64 = 1e-11;
+/// The absolute error that ρ_dh reaches.
+const FINEST: f64 = 1e-11;
 
 impl Reference for Classic {
     fn measure(&self) -> Measure {
@@ -35,13 +35,12 @@ impl Reference for Classic {
     }
 
     fn rho_dh(&self, mu: f64, setting: &Setting) -> [f64; 2] {
-        self.rho_dh_within(TOLERANCE, mu, setting.alpha)
+        self.rho_dh_within(setting.tolerance(FINEST), mu, setting.alpha)
     }
 
-    /// As the mean weighs ρ with 2μ, ρ may be the coarser the smaller μ is.
     fn rho_hh(&self, setting: &Setting) -> [f64; 2] {
         let alpha = setting.alpha;
-        definition::rho_hh(|mu| self.rho_dh_within(TOLERANCE / mu, mu, alpha), alpha)
+        definition::rho_hh(setting, alpha, |mu, tolerance| self.rho_dh_within(tolerance, mu, alpha))
     }
 }
 

@@ -31,7 +31,7 @@ impl Reference for Subsurface {
     }
 
     fn rho_dh(&self, mu: f64, setting: &Setting) -> [f64; 2] {
-        definition::rho_dh(|angles| self.brdf(angles, setting).unwrap_or([f64::NAN; 2]), mu)
+        definition::rho_dh(|angles| self.brdf(angles, setting).unwrap_or([f64::NAN; 2]), mu, setting)
     }
 }
 
@@ -41,6 +41,6 @@ impl Reference for Sheen {
     }
 
     fn rho_dh(&self, mu: f64, setting: &Setting) -> [f64; 2] {
-        definition::rho_dh(|angles| self.brdf(angles, setting).unwrap_or([f64::NAN; 2]), mu)
+        definition::rho_dh(|angles| self.brdf(angles, setting).unwrap_or([f64::NAN; 2]), mu, setting)
     }
 }

@@ -27,7 +27,7 @@ impl Reference for Eon {
     }
 
     fn rho_dh(&self, mu: f64, setting: &Setting) -> [f64; 2] {
-        definition::rho_dh_kinked(|angles| value(angles, setting), mu)
+        definition::rho_dh_kinked(|angles| value(angles, setting), mu, setting)
     }
 }
 

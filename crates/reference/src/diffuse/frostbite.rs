@@ -23,7 +23,7 @@ impl Reference for Frostbite {
     }
 
     fn rho_dh(&self, mu: f64, setting: &Setting) -> [f64; 2] {
-        definition::rho_dh(|angles| value(angles, setting.alpha), mu)
+        definition::rho_dh(|angles| value(angles, setting.alpha), mu, setting)
     }
 }
 

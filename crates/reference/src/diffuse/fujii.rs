@@ -26,7 +26,7 @@ impl Reference for Fujii {
     }
 
     fn rho_dh(&self, mu: f64, setting: &Setting) -> [f64; 2] {
-        definition::rho_dh_kinked(|angles| [value(angles, setting.alpha), 0.0], mu)
+        definition::rho_dh_kinked(|angles| [value(angles, setting.alpha), 0.0], mu, setting)
     }
 }
 

@@ -19,8 +19,8 @@ impl Reference for GltfDiffuse {
         Some(value(angles))
     }
 
-    fn rho_dh(&self, mu: f64, _: &Setting) -> [f64; 2] {
-        definition::rho_dh(value, mu)
+    fn rho_dh(&self, mu: f64, setting: &Setting) -> [f64; 2] {
+        definition::rho_dh(value, mu, setting)
     }
 }
 

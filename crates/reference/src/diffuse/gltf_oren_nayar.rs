@@ -24,7 +24,7 @@ impl Reference for GltfOrenNayar {
     }
 
     fn rho_dh(&self, mu: f64, setting: &Setting) -> [f64; 2] {
-        definition::rho_dh_kinked(|angles| value(angles, setting.alpha), mu)
+        definition::rho_dh_kinked(|angles| value(angles, setting.alpha), mu, setting)
     }
 }
 

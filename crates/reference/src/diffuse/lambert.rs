@@ -14,7 +14,7 @@ impl Reference for Lambert {
         Some([FRAC_1_PI, 0.0])
     }
 
-    fn rho_dh(&self, mu: f64, _: &Setting) -> [f64; 2] {
-        definition::rho_dh(|_| [FRAC_1_PI, 0.0], mu)
+    fn rho_dh(&self, mu: f64, setting: &Setting) -> [f64; 2] {
+        definition::rho_dh(|_| [FRAC_1_PI, 0.0], mu, setting)
     }
 }
