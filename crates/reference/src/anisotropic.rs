@@ -10,6 +10,7 @@ use crate::setting::Setting;
 use crate::{Angles, Factors, Reference, definition};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::iter::successors;
 
 /// A rough surface of small mirrors, αx along the tangent and αy along the bitangent.
 ///
@@ -24,13 +25,14 @@ pub(crate) struct Anisotropic {
 const FINEST: f64 = 1e-9;
 /// The absolute error that ρ_hh reaches.
 const FINEST_MEAN: f64 = 1e-7;
-/// The integral over θm is noise to the one over φ, so it has to be finer by this factor.
+/// The integral over r is noise to the one over χ, so it has to be finer by this factor.
 const FINER: f64 = 0.1;
-/// The integrands vary on the scale 1 in u and in v.
+/// The integrand varies on the scale 1 in v.
 const PANEL: f64 = 3.0;
-/// Azimuths of a mean over a quarter of a turn, of which the others are mirror images: the trapezoid's error is that of
-/// harmonic 2 · 32 of φ.
-const AZIMUTHS: u32 = 16;
+/// The ratio of neighbouring breaks about the edge of the disc.
+const GRADE: f64 = 8.0;
+/// The azimuths of a mean over a quarter of a turn, of which the others are mirror images: at first, and at most.
+const AZIMUTHS: [u32; 2] = [4, 512];
 
 impl Reference for Anisotropic {
     fn measure(&self) -> Measure {
@@ -55,12 +57,7 @@ impl Reference for Anisotropic {
 
     fn rho_hh(&self, setting: &Setting) -> [f64; 2] {
         let mean = |mu: f64, tolerance: f64| {
-            let term = |k: u32| {
-                let phi = FRAC_PI_2 * f64::from(k) / f64::from(AZIMUTHS);
-                let weight = if k == 0 || k == AZIMUTHS { 0.5 } else { 1.0 } / f64::from(AZIMUTHS);
-                self.rho_dh_within(tolerance, mu, phi, setting).map(|rho| weight * rho)
-            };
-            (0..=AZIMUTHS).map(term).fold([0.0; 2], |sum, rho| [sum[0] + rho[0], sum[1] + rho[1]])
+            mean_over_azimuths(tolerance, |phi| self.rho_dh_within(FINER * tolerance, mu, phi, setting))
         };
         definition::rho_hh_within(setting.tolerance(FINEST_MEAN), setting.alpha, mean)
     }
@@ -99,89 +96,103 @@ impl Anisotropic {
         self.ndf.d(cos2, tan2, alpha, &setting.parameters) * alpha * alpha / (axes[0] * axes[1])
     }
 
-    /// As [`Microfacet`](crate::Microfacet)'s, once around.
+    /// ρ over the slopes p = tan θm (cos φm, sin φm) that reflect ωo above the horizon, which are the disc
+    /// |p − tan θo ô| ≤ 1/μ, with ô the azimuth of ωo as a vector: p = r (αx cos χ, αy sin χ), in which D depends on r alone.
     fn rho_dh_within(&self, tolerance: f64, mu: f64, phi: f64, setting: &Setting) -> [f64; 2] {
         let mu = mu.clamp(MIN_MU, 1.0);
-        let axes = axes(setting);
+        let axes @ [x, y] = axes(setting);
         if axes == [0.0; 2] {
             return self.fresnel.weights(mu, 1.0 - mu, &setting.parameters);
         }
-        let ratio = (axes[0] / axes[1]).min(axes[1] / axes[0]);
-        let narrow = if axes[0] < axes[1] { FRAC_PI_2 } else { 0.0 };
-        // About the axis of the larger α, D falls with the square of the azimuth from the width of its peak on: a rule that
-        // is asked for little would not see so thin a layer, and its tails are percents.
-        let widths = || std::iter::successors(Some(ratio), |width| Some(6.0 * width)).take_while(|&width| width < 1.0);
-        // φm − φ = ±π/2 + μ sinh u: the horizon turns there.
-        let reach = (FRAC_PI_2 / mu).asinh();
-        let mut sum = [0.0; 2];
-        for centre in [FRAC_PI_2, -FRAC_PI_2] {
-            let mut breaks = even_breaks(-reach, reach, PANEL);
-            for turn in [-2.0, -1.0, 0.0, 1.0, 2.0] {
-                for width in widths().flat_map(|width| [-width, width]) {
-                    let offset = narrow + turn * PI - phi + width - centre;
-                    if offset.abs() < FRAC_PI_2 {
-                        breaks.push((offset / mu).asinh());
-                    }
-                }
-            }
+        let (sin_phi, cos_phi) = phi.sin_cos();
+        // The edge of the disc passes the origin where p is perpendicular to ô, the closer the more ωo grazes: r falls there
+        // from the far side's to 1 within this width.
+        let edge = (x * cos_phi).atan2(-y * sin_phi);
+        let at_edge = (x * edge.cos()).hypot(y * edge.sin());
+        let width = at_edge.min(1.0) * mu / (sin_of(mu) * alpha_towards(axes, phi)).max(f64::MIN_POSITIVE);
+        let widths = successors(Some(width.max(MIN_MU)), |width| Some(GRADE * width)).take_while(|&w| w < 1.0);
+        let widths: Vec<_> = widths.collect();
+        let half = |edge: f64| {
+            let offsets = widths.iter().flat_map(|&width| [-width, width]).chain([-FRAC_PI_2, 0.0, FRAC_PI_2]);
+            let mut breaks: Vec<_> = offsets.map(|offset| edge + offset).collect();
             breaks.sort_by(f64::total_cmp);
-            let slice = |u: f64| {
-                let turn = centre + mu * u.sinh();
-                self.slice(FINER * tolerance, mu * u.cosh(), mu, turn, phi, setting)
-            };
-            let [a, b] = integrate(slice, &breaks, tolerance).value_or_nan();
-            sum = [sum[0] + a, sum[1] + b];
-        }
-        sum
+            let slice = |chi: f64| self.slice(FINER * tolerance, mu, [cos_phi, sin_phi], chi, setting);
+            integrate(slice, &breaks, 0.5 * tolerance).value_or_nan()
+        };
+        let ([a, b], [c, d]) = (half(edge), half(edge + PI));
+        [a + c, b + d]
     }
 
-    /// The integral over θm at an azimuth φm = φ + turn of ωm, times `weight`, with tan θm = α(φm) sinh v.
-    fn slice(
-        &self,
-        tolerance: f64,
-        weight: f64,
-        mu: f64,
-        turn: f64,
-        phi: f64,
-        setting: &Setting,
-    ) -> [f64; 2] {
-        let axes = axes(setting);
-        let (sin_turn, cos_turn) = turn.sin_cos();
-        let alpha = alpha_along(axes, phi + turn);
-        let wo = DVec3::new(sin_of(mu), 0.0, mu);
-        let lambda = |tan2: f64, alpha: f64| self.ndf.lambda(tan2, alpha, &setting.parameters);
-        let alpha_o = alpha_towards(axes, phi);
-        let lambda_o = lambda((wo.x / wo.z).powi(2), alpha_o);
+    /// The integral over r = sinh v at an azimuth χ: per unit of v, D changes by a bounded factor.
+    fn slice(&self, tolerance: f64, mu: f64, towards: [f64; 2], chi: f64, setting: &Setting) -> [f64; 2] {
+        let axes @ [x, y] = axes(setting);
+        let (sin_chi, cos_chi) = chi.sin_cos();
+        let e = [x * cos_chi, y * sin_chi];
+        // α along p, as 1/α² = cos²φm/αx² + sin²φm/αy².
+        let alpha = e[0].hypot(e[1]);
+        let sin = sin_of(mu);
+        let wo = DVec3::new(sin * towards[0], sin * towards[1], mu);
+        let lambda = |w: DVec3| {
+            let tan2 = (w.x * w.x + w.y * w.y) / (w.z * w.z);
+            let alpha = alpha_towards(axes, w.y.atan2(w.x));
+            (self.ndf.lambda(tan2, alpha, &setting.parameters), alpha)
+        };
+        let (lambda_o, alpha_o) = lambda(wo);
         let integrand = |v: f64| {
-            let sinh = v.sinh();
-            let tan_m = alpha * sinh;
-            let cos_m = 1.0 / (1.0 + tan_m * tan_m).sqrt();
-            let sin_m = tan_m * cos_m;
-            let wm = DVec3::new(sin_m * cos_turn, sin_m * sin_turn, cos_m);
+            let r = v.sinh();
+            let p = [r * e[0], r * e[1]];
+            let tan2_m = p[0] * p[0] + p[1] * p[1];
+            let cos2_m = 1.0 / (1.0 + tan2_m);
+            let cos_m = cos2_m.sqrt();
+            let wm = DVec3::new(p[0] * cos_m, p[1] * cos_m, cos_m);
             let cos_d = wo.dot(wm);
-            let wi = 2.0 * cos_d * wm - wo;
-            let mu_i = f64::clamp(wi.z, 0.0, 1.0);
-            let alpha_i = alpha_towards(axes, phi + wi.y.atan2(wi.x));
-            let lambda_i = lambda((sin_of(mu_i) / mu_i).powi(2), alpha_i);
+            let mut wi = 2.0 * cos_d * wm - wo;
+            wi.z = wi.z.clamp(0.0, 1.0);
+            let (lambda_i, alpha_i) = lambda(wi);
             let facet = Facet {
-                mu: [mu_i, mu],
+                mu: [wi.z, mu],
                 lambda: [lambda_i, lambda_o],
                 cos_d,
                 cos_m,
                 alpha: [alpha_i, alpha_o],
             };
             let g2 = self.masking.g2(&facet);
-            let d = self.d(cos_m * cos_m, tan_m * tan_m, phi + turn, axes, setting);
-            let solid_angle = sin_m * cos_m * cos_m * alpha * (1.0 + sinh * sinh).sqrt();
-            let value = d * g2 * cos_d / mu * solid_angle * weight;
+            // Heitz 2014, eq. 83 and 85, and dωm = cos³θm dp, dp = αx αy r dr dχ.
+            let d = self.ndf.d(cos2_m, tan2_m, alpha, &setting.parameters) * alpha * alpha;
+            let solid_angle = cos2_m * cos_m * r * (1.0 + r * r).sqrt();
+            let value = d * g2 * cos_d / mu * solid_angle;
             self.fresnel.weights(cos_d, 1.0 - cos_d, &setting.parameters).map(|fresnel| value * fresnel)
         };
-        // cos θi = 0: μ tan² − 2 s cos φ tan − μ = 0.
-        let x = sin_of(mu) * cos_turn;
-        let root = x.hypot(mu);
-        let tan_max = if x > 0.0 { (x + root) / mu } else { mu / (root - x) };
-        integrate(integrand, &even_breaks(0.0, (tan_max / alpha).asinh(), PANEL), tolerance).value_or_nan()
+        // |p − tan θo ô| = 1/μ: μ α² r² − 2 s (e·ô) r − μ = 0.
+        let along = sin * (e[0] * towards[0] + e[1] * towards[1]);
+        let root = along.hypot(mu * alpha);
+        let end = if along > 0.0 { (along + root) / (mu * alpha * alpha) } else { mu / (root - along) };
+        integrate(integrand, &even_breaks(0.0, end.asinh(), PANEL), tolerance).value_or_nan()
     }
+}
+
+/// The mean over φ by the trapezoid rule, whose nodes are doubled until two rules agree; NaN where they do not.
+fn mean_over_azimuths(tolerance: f64, rho: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
+    let [first, most] = AZIMUTHS;
+    let mean_at = |count: u32, start: f64| {
+        let phi = |k: u32| FRAC_PI_2 * (start + f64::from(k)) / f64::from(count);
+        let sum = (0..count).map(|k| rho(phi(k))).fold([0.0; 2], |sum, rho| [sum[0] + rho[0], sum[1] + rho[1]]);
+        sum.map(|sum| sum / f64::from(count))
+    };
+    let middle = |a: [f64; 2], b: [f64; 2]| [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+    // Both ends of the quarter count as one azimuth.
+    let (left, [start, end]) = (mean_at(first, 0.0), [0.0, FRAC_PI_2].map(&rho));
+    let mut mean = [0, 1].map(|k| left[k] + 0.5 * (end[k] - start[k]) / f64::from(first));
+    let mut count = first;
+    while count < most {
+        let finer = middle(mean, mean_at(count, 0.5));
+        if (0..2).all(|k| (finer[k] - mean[k]).abs() <= tolerance) {
+            return finer;
+        }
+        mean = finer;
+        count *= 2;
+    }
+    [f64::NAN; 2]
 }
 
 /// [αx, αy].

@@ -49,8 +49,10 @@ pub fn rho_hh(setting: &Setting, alpha: f64, rho_dh: impl Fn(f64, f64) -> [f64; 
 
 /// The same to a tolerance.
 pub(super) fn rho_hh_within(tolerance: f64, alpha: f64, rho_dh: impl Fn(f64, f64) -> [f64; 2]) -> [f64; 2] {
-    let scales = [0.0, 1.0, 5.0, 25.0].map(|multiple| multiple * alpha);
-    let breaks: Vec<f64> = scales.into_iter().filter(|&mu| mu < 0.8).map(f64::sqrt).chain([1.0]).collect();
+    // The mean has μ² below μ: where that is less than the tolerance, nothing is worth nodes.
+    let scales = [1.0, 5.0, 25.0].map(|multiple| multiple * alpha);
+    let scales = [0.0].into_iter().chain(scales.into_iter().filter(|mu| mu * mu > tolerance));
+    let breaks: Vec<f64> = scales.filter(|&mu| mu < 0.8).map(f64::sqrt).chain([1.0]).collect();
     let weighted = |w: f64| rho_dh(w * w, MEAN_FINER * tolerance / (w * w)).map(|rho| 4.0 * w.powi(3) * rho);
     integrate(weighted, &breaks, tolerance).value_or_nan()
 }
