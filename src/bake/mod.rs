@@ -13,7 +13,8 @@ use crate::base::error::{Error, Result};
 use crate::base::precision::{Precision, STORED_F32, VALUE_F32};
 use crate::base::timings::Stopwatch;
 use crate::base::timings::Timings;
-use crate::base::tolerance::{CERTIFY_RATIO, ENERGY_SLACK, FINEST, KEPT_SHARE, is_fine};
+use crate::base::tolerance::{CERTIFY_RATIO, ENERGY_SLACK, FINEST, KEPT_SHARE};
+use crate::integrate::rule_set::has_listed_directions;
 use crate::integrate::scale::factor_error;
 use crate::model::compensation::Factor;
 use crate::model::lobe::Lobe;
@@ -117,14 +118,14 @@ impl Evaluator {
     }
 
     /// The path that evaluates a plan: in f64 where its tolerance asks for it, and on the CPU where the device has no f64.
-    /// The CPU evaluates all values in f64, as a device stores values in f32 only; and integrals beyond f32 of models without
-    /// node counts, whose sums may be longer than the loops that drivers are known to run.
+    /// The CPU evaluates all values in f64, as a device stores values in f32 only; and integrals over directions that the
+    /// host finds, as the upload of a direction costs more than its evaluation.
     pub(crate) fn path(&self, plan: &TablePlan) -> Path<'_> {
+        let integral = plan.quantity().is_integral();
         match (self, plan.precision()) {
+            (_, precision) if integral && has_listed_directions(plan) => Path::Cpu(precision),
             (Self::Device(device), Precision::F32) => Path::Device(device, Precision::F32),
-            (Self::Device(device), Precision::F64)
-                if device.has_f64() && plan.quantity().is_integral() && has_counts(plan) =>
-            {
+            (Self::Device(device), Precision::F64) if device.has_f64() && integral => {
                 Path::Device(device, Precision::F64)
             }
             (_, precision) => Path::Cpu(precision),
@@ -199,11 +200,6 @@ pub(crate) enum Path<'a> {
     Cpu(Precision),
 }
 
-/// Whether all models of a plan have node counts for their integrals.
-fn has_counts(plan: &TablePlan) -> bool {
-    plan.lobes().iter().all(|lobe| lobe.model().has_counts())
-}
-
 impl Path<'_> {
     fn evaluate(
         self,
@@ -237,13 +233,7 @@ impl Path<'_> {
         let mut largest = 0.0;
         for finer in 1..=TRIES {
             let second = plan.clone().with_tolerance(plan.tolerance() * CERTIFY_RATIO.powi(finer))?;
-            // Beyond f32, sums of a model without node counts may be too long for a device.
-            let path = if is_fine(second.rule_tolerance()) && !has_counts(plan) {
-                Self::Cpu(Precision::F64)
-            } else {
-                self
-            };
-            let second = path.evaluate(&second, &mut spent, tick)?;
+            let second = self.evaluate(&second, &mut spent, tick)?;
             let second = match values {
                 Values::F32(_) => Values::F32(second.to_f32().into_owned()),
                 Values::F64(_) => second,
@@ -284,10 +274,10 @@ impl Path<'_> {
         let rule = if plan.quantity().is_value() { "pointwise".into() } else { plan.rule().to_string() };
         match (self, evaluator) {
             (Self::Cpu(_), Evaluator::Device(_)) => {
-                let why = if plan.quantity().is_value() || has_counts(plan) {
-                    "f32 cannot meet the tolerance"
+                let why = if plan.quantity().is_integral() && has_listed_directions(plan) {
+                    "the host finds the directions"
                 } else {
-                    "the model has no node counts for it"
+                    "f32 cannot meet the tolerance"
                 };
                 format!("{rule}, on the CPU: {why}")
             }

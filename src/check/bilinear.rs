@@ -14,8 +14,10 @@ use crate::base::error::Result;
 use crate::base::tolerance::Tolerance;
 use crate::check;
 use crate::check::Check;
+use crate::integrate::rule_set::has_listed_directions;
 use crate::plan::TablePlan;
 use crate::table::axis::{Axis, Mapping, Positions, Variable};
+use crate::table::quantity::Evaluation;
 use crate::table::report::InterpolationError;
 use crate::table::{Values, indices};
 use rayon::prelude::*;
@@ -47,12 +49,15 @@ pub(crate) fn measure(plan: &TablePlan, values: &Values, check: Check) -> Result
         return Ok(None);
     }
     let domain: Vec<_> = plan.axes().iter().map(|axis| promised(axis.variable(), axis.range())).collect();
-    let coordinates: Vec<_> = plan.axes().iter().map(test_points).collect();
-    let dense = Dense::new(plan, values, coordinates);
-    let worst = dense.worst(&domain, SEARCHED);
+    let dense = Dense::new(plan, values, test_grid(plan));
+    let (searched, referenced) = match plan.quantity().evaluation {
+        Evaluation::Hemispherical => (SEARCHED / 4, REFERENCED / 4),
+        _ => (SEARCHED, REFERENCED),
+    };
+    let worst = dense.worst(&domain, searched);
     let mut points: Vec<_> = worst.iter().map(|&texel| dense.around(plan, values, &domain, texel)).collect();
     points
-        .extend(check::sample(&dense.shape(), REFERENCED).into_iter().map(|texel| dense.coordinates(texel)));
+        .extend(check::sample(&dense.shape(), referenced).into_iter().map(|texel| dense.coordinates(texel)));
 
     let channels = plan.channels().len();
     let checked: Vec<_> = points
@@ -94,15 +99,17 @@ pub(crate) fn measure(plan: &TablePlan, values: &Values, check: Check) -> Result
     }))
 }
 
-/// The number of worst points around which a finer grid is searched.
+/// The number of worst points around which a finer grid is searched; a quarter of means over all directions, and of the
+/// further points, as their reference takes longer.
 const SEARCHED: usize = 8;
-/// The number of further points that are compared with the reference.
-const REFERENCED: usize = 56;
+/// The number of further points that are compared with the reference. The fast path, which finds the worst points, is
+/// certified by a finer rule of its own.
+const REFERENCED: usize = 8;
 
 /// The largest error in the promise's domain, by the fast path alone: the layout search uses no reference.
 pub(crate) fn largest(plan: &TablePlan, values: &Values) -> f64 {
     let domain: Vec<_> = plan.axes().iter().map(|axis| promised(axis.variable(), axis.range())).collect();
-    let dense = Dense::new(plan, values, plan.axes().iter().map(test_points).collect());
+    let dense = Dense::new(plan, values, test_grid(plan));
     dense.worst(&domain, 1).first().map_or(0.0, |&texel| dense.errors[texel])
 }
 
@@ -240,17 +247,31 @@ impl Dense {
     }
 }
 
-/// The test coordinates of an axis: its samples, the middles between them in u, both ends of the range, and the ends of
+/// The test coordinates of each axis of a plan. An integral over listed directions takes as long as a hundred others, so that
+/// such a table is tested at fewer points.
+fn test_grid(plan: &TablePlan) -> Vec<Vec<f64>> {
+    const MOST_CELLS: usize = 64;
+    const LEAST_CELLS: usize = 8;
+    const MOST_LISTED: usize = 1 << 13;
+    let grid = |cells: usize| -> Vec<_> { plan.axes().iter().map(|axis| test_points(axis, cells)).collect() };
+    let points = |cells: usize| grid(cells).iter().map(Vec::len).product::<usize>();
+    let mut cells = MOST_CELLS;
+    while has_listed_directions(plan) && cells > LEAST_CELLS && points(cells) > MOST_LISTED {
+        cells /= 2;
+    }
+    grid(cells)
+}
+
+/// The test coordinates of an axis of about so many `cells`: its samples, the middles between them in u, both ends of the range, and the ends of
 /// the promise. At nodes of one axis the errors of the other stand alone, between them they add. A long axis keeps all of
 /// its first cells, where tables are worst, and some of the others.
-fn test_points(axis: &Axis) -> Vec<f64> {
-    const FIRST_CELLS: usize = 24;
-    const CELLS: usize = 64;
+fn test_points(axis: &Axis, cells: usize) -> Vec<f64> {
+    let first_cells = 3 * cells / 8;
     let (n, [a, b]) = (axis.len(), axis.range());
     if n == 1 {
         return axis.values().to_vec();
     }
-    let kept = |k: usize| k < FIRST_CELLS || k.is_multiple_of(n.div_ceil(CELLS)) || k + 2 >= n;
+    let kept = |k: usize| k < first_cells || k.is_multiple_of(n.div_ceil(cells)) || k + 2 >= n;
     let middle = |x: f64, y: f64| match axis.mapping() {
         Mapping::Linear => 0.5 * (x + y),
         Mapping::Sqrt => {

@@ -41,12 +41,18 @@ pub(crate) struct Comparison<'a> {
     tally: ErrorTally,
 }
 
+/// The texels of other tables that a mean over all directions counts for, as its reference integrates over ρ_dh.
+const MEAN_COST: usize = 32;
+
 impl<'a> Comparison<'a> {
     pub fn new(table: &'a TablePlan, check: Check, estimate: Option<f64>) -> Self {
         let known = table.lobes().iter().all(|lobe| reference_of_model(lobe.model()).is_some());
         let sample = match check {
             _ if !known => Some(Vec::new()),
             Check::All => None,
+            Check::Sample(n) if table.quantity().evaluation == Evaluation::Hemispherical => {
+                Some(sample(&table.shape(), n.div_ceil(MEAN_COST)))
+            }
             Check::Sample(n) => Some(sample(&table.shape(), n)),
         };
         let reference_error = reference_error(table, check);

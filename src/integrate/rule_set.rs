@@ -167,6 +167,16 @@ impl RuleSet {
     }
 }
 
+/// Whether some lobe's integrals of a plan are sums over directions that the host lists, rather than over nodes that a
+/// kernel maps.
+pub(crate) fn has_listed_directions(plan: &TablePlan) -> bool {
+    let is_listed = |lobe: &Lobe| {
+        !lobe.factors().is_empty()
+            || plan.rule() == Rule::Warped && matches!(lobe.model().integral, Integral::Mapped(_))
+    };
+    plan.lobes().iter().any(is_listed)
+}
+
 impl InnerRule {
     /// The number of inner integrals of each α.
     pub fn count(&self) -> usize {

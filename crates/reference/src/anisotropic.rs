@@ -27,13 +27,14 @@ const FINEST: f64 = 1e-9;
 const FINEST_MEAN: f64 = 1e-7;
 /// The integral over r is noise to the one over χ, so it has to be finer by this factor.
 const FINER: f64 = 0.1;
+/// ρ_dh is noise to its mean over φ; its own error is far below what it is asked for.
+const FINER_OF_MEAN: f64 = 0.3;
 /// The integrand varies on the scale 1 in v.
 const PANEL: f64 = 3.0;
+/// A quarter of a turn varies on the scale 1 in u.
+const QUARTER: f64 = 5.0;
 /// The ratio of neighbouring breaks about the edge of the disc.
 const GRADE: f64 = 8.0;
-/// The azimuths of a mean over a quarter of a turn, of which the others are mirror images: at first, and at most.
-const AZIMUTHS: [u32; 2] = [4, 512];
-
 impl Reference for Anisotropic {
     fn measure(&self) -> Measure {
         self.ndf.measure()
@@ -56,10 +57,23 @@ impl Reference for Anisotropic {
     }
 
     fn rho_hh(&self, setting: &Setting) -> [f64; 2] {
+        let axes @ [x, y] = axes(setting);
+        if axes == [0.0; 2] {
+            return self.fresnel.mean(&setting.parameters);
+        }
+        // ωo sees another α within this of the axis of the larger one: δφ = ratio sinh u. The quarters are mirror images.
+        let (ratio, sharp) = if x < y { (x / y, 0.0) } else { (y / x, FRAC_PI_2) };
+        let breaks = even_breaks(0.0, (FRAC_PI_2 / ratio).asinh(), QUARTER);
         let mean = |mu: f64, tolerance: f64| {
-            mean_over_azimuths(tolerance, |phi| self.rho_dh_within(FINER * tolerance, mu, phi, setting))
+            let integrand = |u: f64| {
+                let phi = (sharp - ratio * u.sinh()).abs();
+                let weight = ratio * u.cosh() / FRAC_PI_2;
+                let tolerance = FINER_OF_MEAN * tolerance / weight.max(FINER);
+                self.rho_dh_within(tolerance, mu, phi, setting).map(|rho| weight * rho)
+            };
+            integrate(integrand, &breaks, tolerance).value_or_nan()
         };
-        definition::rho_hh_within(setting.tolerance(FINEST_MEAN), setting.alpha, mean)
+        definition::rho_hh_within(setting.tolerance(FINEST_MEAN), x.max(y), mean)
     }
 
     fn factors(&self, angles: &Angles, setting: &Setting) -> Option<Factors> {
@@ -110,7 +124,9 @@ impl Anisotropic {
         let edge = (x * cos_phi).atan2(-y * sin_phi);
         let at_edge = (x * edge.cos()).hypot(y * edge.sin());
         let width = at_edge.min(1.0) * mu / (sin_of(mu) * alpha_towards(axes, phi)).max(f64::MIN_POSITIVE);
-        let widths = successors(Some(width.max(MIN_MU)), |width| Some(GRADE * width)).take_while(|&w| w < 1.0);
+        // Less than the tolerance lies within so much of χ.
+        let width = width.max(FINER * tolerance);
+        let widths = successors(Some(width), |width| Some(GRADE * width)).take_while(|&w| w < 1.0);
         let widths: Vec<_> = widths.collect();
         let half = |edge: f64| {
             let offsets = widths.iter().flat_map(|&width| [-width, width]).chain([-FRAC_PI_2, 0.0, FRAC_PI_2]);
@@ -169,30 +185,6 @@ impl Anisotropic {
         let end = if along > 0.0 { (along + root) / (mu * alpha * alpha) } else { mu / (root - along) };
         integrate(integrand, &even_breaks(0.0, end.asinh(), PANEL), tolerance).value_or_nan()
     }
-}
-
-/// The mean over φ by the trapezoid rule, whose nodes are doubled until two rules agree; NaN where they do not.
-fn mean_over_azimuths(tolerance: f64, rho: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
-    let [first, most] = AZIMUTHS;
-    let mean_at = |count: u32, start: f64| {
-        let phi = |k: u32| FRAC_PI_2 * (start + f64::from(k)) / f64::from(count);
-        let sum = (0..count).map(|k| rho(phi(k))).fold([0.0; 2], |sum, rho| [sum[0] + rho[0], sum[1] + rho[1]]);
-        sum.map(|sum| sum / f64::from(count))
-    };
-    let middle = |a: [f64; 2], b: [f64; 2]| [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
-    // Both ends of the quarter count as one azimuth.
-    let (left, [start, end]) = (mean_at(first, 0.0), [0.0, FRAC_PI_2].map(&rho));
-    let mut mean = [0, 1].map(|k| left[k] + 0.5 * (end[k] - start[k]) / f64::from(first));
-    let mut count = first;
-    while count < most {
-        let finer = middle(mean, mean_at(count, 0.5));
-        if (0..2).all(|k| (finer[k] - mean[k]).abs() <= tolerance) {
-            return finer;
-        }
-        mean = finer;
-        count *= 2;
-    }
-    [f64::NAN; 2]
 }
 
 /// [αx, αy].

@@ -291,10 +291,10 @@ fn integrals_keep_the_error_that_they_are_asked_for() {
             }
             let values = [("aspect", aspect), ("strength", strength), ("thickness", 500.0)];
             let parameters = Parameters::named(values).unwrap();
-            for alpha in [1e-6, 1e-3, 0.05, 0.4, 1.0] {
+            for alpha in [1e-6, 0.05, 1.0] {
                 // GTR and Charlie begin later.
                 let Ok(setting) = Setting::measured(model.measure(), alpha, &parameters) else { continue };
-                for mu in [0.0, 1e-3, 0.05, 0.5, 0.95, 1.0] {
+                for mu in [0.0, 1e-3, 0.5, 1.0] {
                     for phi in [0.0, 0.4, FRAC_PI_2] {
                         if phi > 0.0 && !ndf.ends_with("anisotropic") {
                             continue;
