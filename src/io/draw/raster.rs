@@ -21,7 +21,7 @@ pub(crate) fn encode_pixels(pixels: &Pixels) -> Result<Vec<u8>> {
 
 fn png(rgb: &[u8], [width, height]: [usize; 2]) -> Result<Vec<u8>> {
     let mut png = Vec::new();
-    PngEncoder::new_with_quality(&mut png, CompressionType::Best, FilterType::Adaptive)
+    PngEncoder::new_with_quality(&mut png, CompressionType::Default, FilterType::Adaptive)
         .write_image(rgb, width as u32, height as u32, ExtendedColorType::Rgb8)
         .map_err(|error| Error::Internal(format!("PNG: {error}")))?;
     Ok(png)
