@@ -15,14 +15,26 @@ use crate::table::rule::{MAX_GAUSS, MAX_GRID, MAX_SAMPLES, Rule};
 use crate::table::storage::Storage;
 use document::{Document, Fields, Item};
 use std::collections::{BTreeSet, HashSet};
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
 /// Tables are not better than f32, and a tolerance above 1 promises nothing.
 const TOLERANCES: [f64; 2] = [1e-12, 1.0];
 
+/// The longest recipe that is read: tens of thousands of materials.
+const MAX_BYTES: u64 = 1 << 23;
+
 /// Reads a recipe.
 pub(super) fn read(path: &Path) -> Result<Scene> {
-    parse(path, &std::fs::read(path).map_err(Error::io("read", path))?)
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(Error::io("read", path))?;
+    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(Error::io("read", path))?;
+    if bytes.len() as u64 > MAX_BYTES {
+        let (path, most) = (path.display(), MAX_BYTES >> 20);
+        return Err(Error::input(format!("{path}: it is longer than {most} MiB; split the recipe")));
+    }
+    parse(path, &bytes)
 }
 
 /// Reads a recipe from its text; `path` is what messages call it.
