@@ -34,6 +34,10 @@ pub fn decode(bytes: &[u8]) -> Result<Texels, String> {
     let level = bytes.get(Header::LENGTH..).and_then(<[u8]>::first_chunk).ok_or_else(short)?;
     let level = LevelIndex::from_bytes(level);
     let data = range(bytes, level.byte_offset, level.byte_length).ok_or_else(short)?;
+    // The finest level comes last; buffers may be padded.
+    if bytes.len() as u64 - level.byte_offset - level.byte_length > MAX_PADDING {
+        return Err(broken("there are other bytes behind its picture"));
+    }
     let depth = if is_deep { 2 } else { 1 };
     let size = u64::from(width) * u64::from(height) * channels.len() as u64 * depth;
     let sources = [0, 1, 2, 3].map(|k| channels.iter().position(|&channel| channel == k));
@@ -49,7 +53,7 @@ pub fn decode(bytes: &[u8]) -> Result<Texels, String> {
             // Piece by piece, and no more than there should be: a bomb takes no memory.
             loop {
                 piece.clear();
-                let wanted = left.min(PIECE).max(1);
+                let wanted = left.clamp(1, PIECE);
                 let read = decoder.by_ref().take(wanted).read_to_end(&mut piece);
                 let read = read.map_err(|e| broken(&e.to_string()))? as u64;
                 if read == 0 && left == 0 {
@@ -61,9 +65,8 @@ pub fn decode(bytes: &[u8]) -> Result<Texels, String> {
                 })?;
                 texels.add_bytes(&piece, channels.len(), sources);
             }
-            if decoder.decoder.get_checksum_from_data() != decoder.decoder.get_calculated_checksum()
-                && decoder.decoder.get_checksum_from_data().is_some()
-            {
+            let checksum = decoder.decoder.get_checksum_from_data();
+            if checksum.is_some() && checksum != decoder.decoder.get_calculated_checksum() {
                 return Err(broken("its checksum does not fit"));
             }
         }
@@ -71,6 +74,9 @@ pub fn decode(bytes: &[u8]) -> Result<Texels, String> {
     }
     Ok(texels)
 }
+
+/// The most bytes behind the picture.
+const MAX_PADDING: u64 = 15;
 
 /// A multiple of the bytes of every texel: 1, 2, 3, 4, 6 or 8.
 const PIECE: u64 = 24 << 12;
