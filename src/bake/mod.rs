@@ -304,9 +304,10 @@ pub fn within_tolerance(plan: &TablePlan, table: &Table) -> Result<()> {
         && let Some(max) = between.max.filter(|&max| max > plan.tolerance())
     {
         return Err(Error::Promise(format!(
-            "table {}: bilinear look-ups are off by {max:.2e} where {:.0e} is allowed ({:?}); allow more, or \
+            "table {}: bilinear look-ups are off by {} where {:e} is allowed ({:?}); allow more, or \
              give counts in place of auto",
             plan.name(),
+            beyond(max, plan.tolerance()),
             plan.tolerance(),
             between.worst
         )));
@@ -314,11 +315,16 @@ pub fn within_tolerance(plan: &TablePlan, table: &Table) -> Result<()> {
     // Measured against the reference, or between two rules: whichever is worse.
     let certified = plan.rule() == Rule::Warped && plan.quantity().is_integral();
     let between = table.error.estimate.filter(|_| certified);
-    let measured = table.error.measured_max.into_iter().chain(between).fold(0.0, f64::max);
-    if measured <= plan.tolerance() {
+    let measured = table.error.measured_max.unwrap_or(0.0);
+    let largest = measured.max(between.unwrap_or(0.0));
+    if largest <= plan.tolerance() {
         return Ok(());
     }
-    let worst: Vec<_> = table.error.worst.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+    // The texel of the number: of the difference between two rules none is known.
+    let worst = match measured == largest {
+        true => table.error.worst.iter().map(|(name, value)| format!("{name} = {value}")).collect(),
+        false => vec!["by a finer rule".to_string()],
+    };
     let remedy = match plan.rule() {
         Rule::Grid { .. } => "take a finer grid or the warped rule",
         Rule::Gauss { .. } | Rule::Hammersley { .. } | Rule::Vndf { .. } | Rule::Random { .. } => {
@@ -332,11 +338,19 @@ pub fn within_tolerance(plan: &TablePlan, table: &Table) -> Result<()> {
         Rule::Warped => "allow more",
     };
     Err(Error::Promise(format!(
-        "table {}: its error is {measured:.2e} where {:.0e} is allowed ({}); {remedy}",
+        "table {}: its error is {} where {:e} is allowed ({}); {remedy}",
         plan.name(),
+        beyond(largest, plan.tolerance()),
         plan.tolerance(),
         worst.join(", ")
     )))
+}
+
+/// A number above a limit, in the digits that tell it from the limit, and three at least.
+fn beyond(value: f64, limit: f64) -> String {
+    let digits =
+        (2..=16).find(|&digits| format!("{value:.digits$e}").parse::<f64>().is_ok_and(|x| x > limit));
+    format!("{value:.*e}", digits.unwrap_or(16))
 }
 
 /// Refuses a table that reflects more in some direction than the lobes' models promise (1 each where energy is conserved).

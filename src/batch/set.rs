@@ -16,7 +16,7 @@ use crate::scene::planner::{Basis, MaterialPlan, Plan};
 use crate::table::Table;
 use crate::table::quantity::RHO_DH;
 use serde::Serialize;
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 use std::panic::resume_unwind;
 use std::path::Path;
 use std::thread::{self, ScopedJoinHandle};
@@ -76,7 +76,8 @@ struct Requirements<'a> {
 /// The result of baking a plan.
 #[derive(Debug)]
 pub struct Baked {
-    /// The tables, in the plan's order. Those that were streamed come without their values.
+    /// The tables, in the plan's order, without their values: those are in the files, so that memory does not grow with
+    /// the number of tables.
     pub tables: Vec<Table>,
     /// The files of each table.
     pub files: Vec<Files>,
@@ -117,6 +118,7 @@ pub fn bake_set(
         options,
         provenance: &provenance,
         tables: Vec::new(),
+        largest: Vec::new(),
         written: Vec::new(),
         misses: Vec::new(),
     };
@@ -178,13 +180,14 @@ pub fn bake_set(
         }
         finished.take_checked(&mut checking, &mut timings)
     })?;
-    let Finished { set, tables, written, mut misses, .. } = finished;
+    let Finished { set, tables, largest, written, mut misses, .. } = finished;
     if !misses.is_empty() {
         set.discard_tiles()?;
         misses.push(format!("{}: left as it was", dir.display()));
         return Err(Error::Promise(misses.join("\n")));
     }
-    let warnings: Vec<_> = plan.warnings.iter().cloned().chain(energy_warnings(plan, &tables)).collect();
+    let warnings = plan.warnings.iter().cloned().chain(energy_warnings(plan, &tables, &largest));
+    let warnings: Vec<_> = warnings.collect();
     let manifest = serde_json::to_value(Manifest {
         schema: 1,
         gonio: Version { version: env!("CARGO_PKG_VERSION") },
@@ -226,6 +229,8 @@ struct Finished<'a> {
     options: &'a SetOptions,
     provenance: &'a Provenance,
     tables: Vec<Table>,
+    /// The largest value of each table; of a streamed one it is not known.
+    largest: Vec<Option<f64>>,
     written: Vec<Files>,
     /// The tolerances that tables missed; once there is one, nothing more is written.
     misses: Vec<String>,
@@ -241,13 +246,15 @@ impl Finished<'_> {
 
     fn take(&mut self, plan: &TablePlan, table: Table, timings: &mut Timings) -> Result<()> {
         let is_met = self.is_met(plan, &table);
-        let table = self.options.target.apply(table)?;
+        self.largest.push(Some(table.values.iter().fold(0.0, f64::max)));
+        let mut table = self.options.target.apply(table)?;
         if is_met {
             let start = Stopwatch::start();
             let formats = self.options.target.formats(&self.options.formats);
             self.written.push(self.set.write(&table, &formats, self.provenance)?);
             timings.write += start.seconds();
         }
+        table.values = Vec::<f32>::new().into();
         self.tables.push(table);
         Ok(())
     }
@@ -270,6 +277,7 @@ impl Finished<'_> {
             self.written.push(written);
             timings.write += start.seconds();
         }
+        self.largest.push(None);
         self.tables.push(table);
         Ok(())
     }
@@ -282,24 +290,18 @@ impl Finished<'_> {
 }
 
 /// Warns of materials that reflect more light than they receive.
-fn energy_warnings(plan: &Plan, tables: &[Table]) -> Vec<String> {
-    let gains =
-        |table: &&Table| table.quantity == &RHO_DH && plan.materials.iter().any(|m| m.name == table.subject);
-    let largest = |table: &Table| table.values.iter().fold(0.0, f64::max);
-    tables
-        .iter()
-        .filter(gains)
-        .filter(|table| largest(table) > 1.0 + plan.tolerance)
-        .map(|table| {
-            let is_gltf = plan.materials.iter().any(|m| m.name == table.subject && m.metallic.is_some());
-            format!(
-                "{}: reflects up to {:.4} of what it receives; its lobes are added without conserving energy{}",
-                table.subject,
-                largest(table),
-                if is_gltf { ", as glTF 2.0 defines them" } else { "" }
-            )
-        })
-        .collect()
+fn energy_warnings(plan: &Plan, tables: &[Table], largest: &[Option<f64>]) -> Vec<String> {
+    let materials: HashMap<_, _> = plan.materials.iter().map(|m| (m.name.as_str(), m)).collect();
+    let warning = |(table, largest): (&Table, &Option<f64>)| {
+        let material = materials.get(table.subject.as_str()).filter(|_| table.quantity == &RHO_DH)?;
+        let largest = largest.filter(|&largest| largest > 1.0 + plan.tolerance)?;
+        Some(format!(
+            "{}: reflects up to {largest:.4} of what it receives; its lobes are added without conserving energy{}",
+            table.subject,
+            if material.metallic.is_some() { ", as glTF 2.0 defines them" } else { "" }
+        ))
+    };
+    tables.iter().zip(largest).filter_map(warning).collect()
 }
 
 impl DeviceEntry {

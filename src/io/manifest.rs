@@ -43,7 +43,11 @@ pub fn verify(dir: &Path) -> Result<Vec<String>> {
 
 /// The SHA-256 of a file, in hexadecimal.
 pub fn sha256(path: &Path) -> Result<String> {
-    Ok(hash(&fs::read(path).map_err(Error::io("read", path))?))
+    let mut file = fs::File::open(path).map_err(Error::io("read", path))?;
+    let mut hasher = Sha256::new();
+    // Piece by piece: a scene may be larger than memory.
+    io::copy(&mut file, &mut hasher).map_err(Error::io("read", path))?;
+    Ok(hex(&hasher.finalize()))
 }
 
 /// A file that a manifest lists, by its name and hash.

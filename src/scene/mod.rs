@@ -53,6 +53,11 @@ impl Scene {
     /// When there is none, with the names that there are.
     pub fn material(&self, name: &str) -> Result<&Material> {
         self.materials.iter().find(|material| material.name == name).ok_or_else(|| {
+            let what = LeftOut::material(name, "").what;
+            if let Some(left) = self.left_out.iter().find(|left| left.what == what) {
+                let (file, why) = (self.file.display(), &left.why);
+                return Error::input(format!("{file}: {what} is not baked: {why}"));
+            }
             let names: Vec<_> = self.materials.iter().map(|material| material.name.as_str()).collect();
             let file = self.file.display();
             Error::input(format!("{file}: no material \"{name}\"; there are {}", names.join(", ")))
@@ -67,6 +72,13 @@ pub struct LeftOut {
     pub what: String,
     /// Why.
     pub why: String,
+}
+
+impl LeftOut {
+    /// A material of a scene.
+    fn material(name: &str, why: impl Into<String>) -> Self {
+        Self { what: format!("material {name}"), why: why.into() }
+    }
 }
 
 /// A material: a sum of weighted lobes.

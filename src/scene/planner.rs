@@ -18,7 +18,7 @@ use crate::table::quantity;
 use crate::table::quantity::{BRDF, Quantity, RHO_DH};
 use crate::table::rule::Rule;
 use serde::Serialize;
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::f64::consts::FRAC_PI_2;
 use std::{fmt, mem};
 
@@ -140,13 +140,14 @@ impl Plan {
         };
         // Names are names of files, and some file systems ignore case.
         let given = scene.tables.iter().filter_map(|request| request.name.as_deref());
-        let mut taken: HashSet<_> = given.map(str::to_lowercase).collect();
+        let mut names = FreeNames { taken: given.map(str::to_lowercase).collect(), next: HashMap::new() };
+        let by_name: HashMap<_, _> = scene.materials.iter().map(|m| (m.name.as_str(), m)).collect();
         if scene.tables.is_empty() {
             plan.require_defaults(&materials, tolerance)?;
             plan.tables = mem::take(&mut plan.tables)
                 .into_iter()
                 .map(|table| {
-                    let name = free_name(table.name(), &mut taken);
+                    let name = names.take(table.name());
                     table.with_name(name)
                 })
                 .collect();
@@ -158,9 +159,10 @@ impl Plan {
                     (_, None) => true,
                 };
                 if wanted {
-                    let mut table = requested(request, scene, tolerance).map_err(|e| e.at(&request.place))?;
+                    let mut table =
+                        requested(request, scene, &by_name, tolerance).map_err(|e| e.at(&request.place))?;
                     if request.name.is_none() {
-                        let name = free_name(table.name(), &mut taken);
+                        let name = names.take(table.name());
                         table = table.with_name(name);
                     }
                     plan.tables.push(table);
@@ -174,12 +176,14 @@ impl Plan {
             }
         }
         // Of materials `describe` says it.
-        let is_material = |table: &TablePlan| scene.materials.iter().any(|m| m.name == table.subject());
+        let is_material = |table: &TablePlan| by_name.contains_key(table.subject());
         let tables = plan.tables.iter().filter(|table| table.is_basis() || !is_material(table));
-        let lobes = tables.flat_map(|table| table.lobes());
-        let bases: Vec<_> = lobes.map(|lobe| (lobe.model(), lobe.parameters())).collect();
-        bases.into_iter().for_each(|(model, parameters)| plan.require_basis(model, &parameters, None));
-        plan.describe(&materials)?;
+        let mut bases = Bases::default();
+        for lobe in tables.flat_map(|table| table.lobes()) {
+            bases.require(lobe.model(), &lobe.parameters(), None);
+        }
+        plan.describe(&materials, &mut bases)?;
+        plan.bases = bases.list;
         for model in MODELS {
             if !plan.bases.iter().any(|basis| basis.model == model.name) {
                 plan.leave_out(model.name, UNUSED);
@@ -197,17 +201,25 @@ impl Plan {
     /// The default set: for each basis in use its split sum, ρ_dh and ρ_hh over the roughness that
     /// occurs and its values at the range's ends and quartiles; RGB tables of constant materials.
     fn require_defaults(&mut self, materials: &[&Material], tolerance: f64) -> Result<()> {
+        let mut lobes: HashMap<&str, Vec<&MaterialLobe>> = HashMap::new();
+        for lobe in materials.iter().flat_map(|material| &material.lobes) {
+            lobes.entry(&lobe.model).or_default().push(lobe);
+        }
         for model in model::all() {
-            let lobes = || materials.iter().flat_map(|m| &m.lobes).filter(|lobe| lobe.model == model.name);
-            let mut settings: Vec<Parameters> = Vec::new();
-            for (parameters, _) in lobes().flat_map(|lobe| settings_of(lobe, model)) {
-                if !settings.contains(&parameters) {
-                    settings.push(parameters);
+            // The different settings, in the order in which they come, and the roughnesses of each.
+            let mut settings: Vec<(Parameters, Vec<&Distribution>)> = Vec::new();
+            let mut known = HashMap::new();
+            for lobe in lobes.get(model.name).into_iter().flatten() {
+                for (parameters, _) in settings_of(lobe, model) {
+                    let at = *known.entry(bits(&parameters)).or_insert_with(|| {
+                        settings.push((parameters, Vec::new()));
+                        settings.len() - 1
+                    });
+                    settings[at].1.extend(&lobe.roughness);
                 }
             }
-            for parameters in settings {
-                let with = |lobe: &&MaterialLobe| settings_of(lobe, model).iter().any(|s| s.0 == parameters);
-                let range = Distribution::union(lobes().filter(with).filter_map(|l| l.roughness.as_ref()));
+            for (parameters, roughnesses) in settings {
+                let range = Distribution::union(roughnesses);
                 for quantity in quantity::of_a_brdf() {
                     let Some(axes) = self.default_axes(model.name, model, quantity, range.as_ref())? else {
                         continue;
@@ -292,7 +304,17 @@ impl Plan {
     }
 
     /// Notes the bases of the materials, and which tables evaluate each material.
-    fn describe(&mut self, materials: &[&Material]) -> Result<()> {
+    fn describe(&mut self, materials: &[&Material], bases: &mut Bases) -> Result<()> {
+        let mut of_bases: HashMap<_, Vec<usize>> = HashMap::new();
+        let mut of_materials: HashMap<&str, Vec<usize>> = HashMap::new();
+        for (k, table) in self.tables.iter().enumerate() {
+            match table.lobes() {
+                [lobe] if table.is_basis() => {
+                    of_bases.entry((table.subject(), bits(&lobe.parameters()))).or_default().push(k);
+                }
+                _ => of_materials.entry(table.subject()).or_default().push(k),
+            }
+        }
         for material in materials {
             let mut plan = MaterialPlan {
                 name: material.name.clone(),
@@ -321,7 +343,7 @@ impl Plan {
                 };
                 for part in &split {
                     let own = lobe.roughness.as_ref().filter(|_| part.model() == model);
-                    self.require_basis(part.model(), &part.parameters(), own);
+                    bases.require(part.model(), &part.parameters(), own);
                     let weight = |k: usize| match &lobe.weights {
                         Weights::Constant(_) => {
                             Weight::Constant(std::array::from_fn(|channel| part.weights()[channel][k]))
@@ -350,35 +372,53 @@ impl Plan {
                 let bound = split.iter().map(Lobe::rho_bound).fold(0.0, f64::max);
                 plan.rho_bound += if largest > 0.0 { largest * bound } else { 0.0 };
             }
-            let serves = |t: &&TablePlan| match t.is_basis() {
-                true => material.lobes.iter().filter(|lobe| lobe.model == t.subject()).any(|lobe| {
-                    let made = settings_of(lobe, t.lobes()[0].model());
-                    made.iter().any(|(parameters, _)| *parameters == t.lobes()[0].parameters())
-                }),
-                false => t.subject() == material.name,
-            };
-            plan.tables = self.tables.iter().filter(serves).map(|t| t.name().to_owned()).collect();
+            let mut serving = of_materials.get(material.name.as_str()).cloned().unwrap_or_default();
+            for lobe in &material.lobes {
+                let model = model::find(&lobe.model)?;
+                for (parameters, _) in settings_of(lobe, model) {
+                    serving.extend(of_bases.get(&(model.name, bits(&parameters))).into_iter().flatten());
+                }
+            }
+            serving.sort_unstable();
+            serving.dedup();
+            plan.tables = serving.into_iter().map(|k| self.tables[k].name().to_owned()).collect();
             self.materials.push(plan);
         }
         Ok(())
     }
 
-    fn require_basis(&mut self, model: &Model, places: &Parameters, roughness: Option<&Distribution>) {
-        let parameters = named(model, places);
-        let is_it = |basis: &Basis| basis.model == model.name && basis.parameters == parameters;
-        let at = self.bases.iter().position(is_it).unwrap_or_else(|| {
-            self.bases.push(Basis { model: model.name.into(), roughness: None, parameters });
-            self.bases.len() - 1
-        });
-        if let Some(d) = roughness {
-            let [min, max] = self.bases[at].roughness.unwrap_or([f64::INFINITY, 0.0]);
-            self.bases[at].roughness = Some([min.min(d.min()), max.max(d.max())]);
-        }
-    }
-
     fn leave_out(&mut self, what: impl Into<String>, why: impl Into<String>) {
         self.left_out.push(LeftOut { what: what.into(), why: why.into() });
     }
+}
+
+/// The bases that are required, each once, in the order in which they come.
+#[derive(Default)]
+struct Bases {
+    list: Vec<Basis>,
+    known: HashMap<(&'static str, ParameterBits), usize>,
+}
+
+impl Bases {
+    fn require(&mut self, model: &'static Model, places: &Parameters, roughness: Option<&Distribution>) {
+        let at = *self.known.entry((model.name, bits(places))).or_insert_with(|| {
+            let parameters = named(model, places);
+            self.list.push(Basis { model: model.name.into(), roughness: None, parameters });
+            self.list.len() - 1
+        });
+        if let Some(d) = roughness {
+            let [min, max] = self.list[at].roughness.unwrap_or([f64::INFINITY, 0.0]);
+            self.list[at].roughness = Some([min.min(d.min()), max.max(d.max())]);
+        }
+    }
+}
+
+/// Parameters as a key.
+type ParameterBits = [u64; 8];
+
+/// Equal for equal parameters: −0 is 0.
+fn bits(parameters: &Parameters) -> ParameterBits {
+    parameters.map(|x| (x + 0.0).to_bits())
 }
 
 /// Why a model has no integrals, if it has none and this is one.
@@ -419,21 +459,42 @@ fn natural_axis(quantity: &Quantity, anisotropic: bool, variable: Variable) -> R
     Axis::natural(variable, count)
 }
 
-/// `name`, with a number if another table has it.
-fn free_name(name: &str, taken: &mut HashSet<String>) -> String {
-    let numbered = (2..).map(|k| format!("{name}-{k}"));
-    let mut names = std::iter::once(name.to_owned()).chain(numbered);
-    names.find(|name| taken.insert(name.to_lowercase())).unwrap_or_default()
+/// Names that no table has yet.
+struct FreeNames {
+    /// In lower case.
+    taken: HashSet<String>,
+    /// The number to try next behind a name.
+    next: HashMap<String, usize>,
+}
+
+impl FreeNames {
+    /// `name`, with a number if another table has it.
+    fn take(&mut self, name: &str) -> String {
+        let next = self.next.entry(name.to_lowercase()).or_insert(1);
+        loop {
+            let free = if *next == 1 { name.to_owned() } else { format!("{name}-{next}") };
+            *next += 1;
+            if self.taken.insert(free.to_lowercase()) {
+                return free;
+            }
+        }
+    }
 }
 
 /// A table that a recipe asks for.
-fn requested(request: &TableRequest, scene: &Scene, tolerance: f64) -> Result<TablePlan> {
+fn requested(
+    request: &TableRequest,
+    scene: &Scene,
+    by_name: &HashMap<&str, &Material>,
+    tolerance: f64,
+) -> Result<TablePlan> {
+    let material = |name: &str| by_name.get(name).copied().map_or_else(|| scene.material(name), Ok);
     let quantity = quantity::find(&request.quantity)?;
     let given = |variable| request.axes.iter().find(|axis| axis.variable() == variable).cloned();
     let mut axes: Vec<_> = given(Variable::Roughness).into_iter().collect();
     let anisotropic = match &request.subject {
         SubjectRequest::Basis { model, .. } => model::find(model)?.is_anisotropic(),
-        SubjectRequest::Material(name) => scene.material(name)?.is_anisotropic(),
+        SubjectRequest::Material(name) => material(name)?.is_anisotropic(),
     };
     let anisotropic = anisotropic || given(Variable::PhiI).or(given(Variable::PhiE)).is_some();
     for &variable in quantity.variables(anisotropic) {
@@ -449,9 +510,7 @@ fn requested(request: &TableRequest, scene: &Scene, tolerance: f64) -> Result<Ta
             let basis = TablePlan::basis(name(&subject), quantity, model::find(model)?, *roughness, axes)?;
             basis.with_parameters(parameters)?.with_compensation(*compensation)?
         }
-        SubjectRequest::Material(subject) => {
-            TablePlan::material(name(subject), quantity, scene, subject, axes)?
-        }
+        SubjectRequest::Material(subject) => table_of(name(subject), quantity, material(subject)?, axes)?,
     };
     let table = table.with_rule(request.rule.unwrap_or(Rule::Warped))?;
     let table = table.with_tolerance(request.tolerance.unwrap_or(tolerance))?;
@@ -470,11 +529,20 @@ impl TablePlan {
         material: &str,
         axes: Vec<Axis>,
     ) -> Result<Self> {
-        let found = scene.material(material)?;
-        let lobes = constant_lobes(found)
-            .map_err(|why| Error::input(format!("material \"{material}\": {why}; tabulate its bases")))?;
-        material_table(name.into(), quantity, found, lobes, axes)
+        table_of(name.into(), quantity, scene.material(material)?, axes)
     }
+}
+
+/// A table of a material that is the same everywhere.
+fn table_of(
+    name: String,
+    quantity: &'static Quantity,
+    material: &Material,
+    axes: Vec<Axis>,
+) -> Result<TablePlan> {
+    let refuse = |why| Error::input(format!("material \"{}\": {why}; tabulate its bases", material.name));
+    let lobes = constant_lobes(material).map_err(refuse)?;
+    material_table(name, quantity, material, lobes, axes)
 }
 
 fn material_table(

@@ -14,15 +14,27 @@ use crate::table::quantity::{QUANTITIES, Quantity};
 use crate::table::rule::{MAX_GAUSS, MAX_GRID, MAX_SAMPLES, Rule};
 use crate::table::storage::Storage;
 use document::{Document, Fields, Item};
-use std::collections::{BTreeSet, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
 /// Tables are not better than f32, and a tolerance above 1 promises nothing.
 const TOLERANCES: [f64; 2] = [1e-12, 1.0];
 
+/// The longest recipe that is read: tens of thousands of materials.
+const MAX_BYTES: u64 = 1 << 23;
+
 /// Reads a recipe.
 pub(super) fn read(path: &Path) -> Result<Scene> {
-    parse(path, &std::fs::read(path).map_err(Error::io("read", path))?)
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(Error::io("read", path))?;
+    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(Error::io("read", path))?;
+    if bytes.len() as u64 > MAX_BYTES {
+        let (path, most) = (path.display(), MAX_BYTES >> 20);
+        return Err(Error::input(format!("{path}: it is longer than {most} MiB; split the recipe")));
+    }
+    parse(path, &bytes)
 }
 
 /// Reads a recipe from its text; `path` is what messages call it.
@@ -39,7 +51,8 @@ pub fn parse(path: &Path, bytes: &[u8]) -> Result<Scene> {
     let tables = match root.get("tables") {
         None => Vec::new(),
         Some(item) => {
-            item.items()?.into_iter().map(|t| table_request(t, &materials)).collect::<Result<_>>()?
+            let known = Known::new(&materials);
+            item.items()?.into_iter().map(|t| table_request(t, &known)).collect::<Result<_>>()?
         }
     };
     if materials.is_empty() && tables.is_empty() {
@@ -216,21 +229,43 @@ fn pair(item: Item) -> Result<[Item; 2]> {
     items[..].try_into().map_err(|_| item.refuse(&format!("{} values; give two: [a, b]", items.len())))
 }
 
+/// What tables are of.
+struct Known<'a> {
+    materials: &'a [Material],
+    by_name: HashMap<&'a str, &'a Material>,
+    /// The measures of roughness and the parameters of all models.
+    parameters: BTreeSet<&'static str>,
+}
+
+impl<'a> Known<'a> {
+    fn new(materials: &'a [Material]) -> Self {
+        let parameters = model::all().flat_map(|model| {
+            let shape = model.shape.map(|shape| shape.name);
+            shape.into_iter().chain(model.parameters.iter().map(|parameter| parameter.name))
+        });
+        let by_name = materials.iter().map(|material| (material.name.as_str(), material)).collect();
+        Self { materials, by_name, parameters: parameters.collect() }
+    }
+
+    fn material(&self, item: &Item<'a>) -> Result<&'a Material> {
+        match self.by_name.get(item.text()?) {
+            Some(material) => Ok(material),
+            None => item.one_of(self.materials.iter().map(|m| (m.name.as_str(), m))),
+        }
+    }
+}
+
 /// `[[tables]]`
-fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
+fn table_request<'a>(item: Item<'a>, known: &Known<'a>) -> Result<TableRequest> {
     let mut keys = vec!["name", "quantity", "material", "model", "masking", "fresnel", "roughness"];
     keys.extend(["axes", "grid", "rule", "storage", "tolerance", COMPENSATION]);
     // A model's own, of which a table of a material or of another model says that it has none.
-    let own = model::all().flat_map(|model| {
-        let shape = model.shape.map(|shape| shape.name);
-        shape.into_iter().chain(model.parameters.iter().map(|parameter| parameter.name))
-    });
-    let own: BTreeSet<_> = own.collect();
+    let own = &known.parameters;
     keys.extend(own.iter().filter(|&&name| name != "roughness"));
     let fields = item.table(&keys)?;
     let name = fields.get("name").map(table_name).transpose()?;
     let quantity = quantity_of(&fields.require("quantity")?)?;
-    let (subject, varies) = subject(&fields, materials, &own)?;
+    let (subject, varies) = subject(&fields, known)?;
 
     let (mut axes, mut auto) = (Vec::new(), Vec::new());
     if let Some(item) = fields.get("axes") {
@@ -250,7 +285,7 @@ fn table_request(item: Item, materials: &[Material]) -> Result<TableRequest> {
                 if quantity.is_value() {
                     return Err(axis_item.refuse("only integrals have auto axes; give a count"));
                 }
-                let varying = varying_roughness(&fields, materials, variable);
+                let varying = varying_roughness(&fields, known, variable);
                 axes.push(range_axis(&axis_item, variable, range.or(varying))?);
                 auto.push(variable);
                 continue;
@@ -286,11 +321,7 @@ fn quantity_of(item: &Item) -> Result<&'static Quantity> {
 }
 
 /// What the table is of, and whether it can have a roughness axis; if not, why.
-fn subject(
-    fields: &Fields,
-    materials: &[Material],
-    own: &BTreeSet<&str>,
-) -> Result<(SubjectRequest, Result<(), &'static str>)> {
+fn subject<'a>(fields: &Fields<'a>, known: &Known<'a>) -> Result<(SubjectRequest, Result<(), &'static str>)> {
     const FIXED: &str = "the table has one roughness already; leave that or this axis away";
     const NONE: &str = "the table's model has no roughness; leave this axis away";
     let has = |material: &Material, test: fn(&Distribution) -> bool| {
@@ -298,8 +329,8 @@ fn subject(
     };
     match (fields.get("material"), fields.get("model")) {
         (Some(item), None) => {
-            let material = item.one_of(materials.iter().map(|m| (m.name.as_str(), m)))?;
-            for key in ["masking", "fresnel", "roughness", COMPENSATION].iter().chain(own) {
+            let material = known.material(&item)?;
+            for key in ["masking", "fresnel", "roughness", COMPENSATION].iter().chain(&known.parameters) {
                 if let Some(item) = fields.get(key) {
                     return Err(item.refuse("a material has its own; leave this away, or give a model"));
                 }
@@ -313,7 +344,7 @@ fn subject(
         }
         (None, Some(item)) => {
             let model = model(fields, item)?;
-            for key in ["roughness"].iter().chain(own) {
+            for key in ["roughness"].iter().chain(&known.parameters) {
                 let shape = model.shape.is_some_and(|shape| *key == "roughness" || shape.name == *key);
                 let has = shape || model.parameters.iter().any(|parameter| parameter.name == *key);
                 if let (false, Some(item)) = (has, fields.get(key)) {
@@ -482,9 +513,9 @@ fn auto_range(item: &Item<'_>, variable: Variable) -> Result<Option<Option<[f64;
 }
 
 /// The roughness that the table's material takes, where it is one that varies.
-fn varying_roughness(fields: &Fields, materials: &[Material], variable: Variable) -> Option<[f64; 2]> {
+fn varying_roughness(fields: &Fields, known: &Known, variable: Variable) -> Option<[f64; 2]> {
     let name = fields.get("material").filter(|_| variable == Variable::Roughness)?.text().ok()?;
-    let material = materials.iter().find(|m| m.name == name)?;
+    let material = known.by_name.get(name)?;
     let all = Distribution::union(material.lobes.iter().filter_map(|lobe| lobe.roughness.as_ref()))?;
     Some([all.min(), all.max()])
 }

@@ -6,6 +6,7 @@ use gonio::scene;
 use gonio::scene::planner::{Plan, Selection};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 #[test]
 fn a_scene_cut_short_is_refused() {
@@ -61,6 +62,71 @@ fn changed_data_beside_a_scene_are_read_or_refused() {
         }
         fs::write(folder.0.path().join(name), &data).unwrap();
     }
+}
+
+/// Sizes are limited before memory is taken.
+#[test]
+fn files_that_are_too_large_are_refused() {
+    let folder = Folder::new();
+    for (name, size, why) in [("x.toml", 1 << 24, "8 MiB"), ("x.gltf", (1 << 28) + 1, "256 MiB")] {
+        let path = folder.0.path().join(name);
+        fs::File::create(&path).unwrap().set_len(size).unwrap();
+        let error = scene::read(&path).unwrap_err().to_string();
+        assert!(error.contains(name) && error.contains(why), "{error}");
+    }
+    let many = format!(r#"{{"asset":{{"version":"2.0"}},"materials":[{}[]]}}"#, "[],".repeat(1 << 21));
+    let error = folder.read("x.gltf", many.as_bytes()).unwrap_err();
+    assert!(error.contains("more than 2097152 values"), "{error}");
+}
+
+/// Reading and planning take a time that grows with the file, not with its square.
+#[test]
+fn many_materials_are_planned_in_seconds() {
+    const MATERIALS: usize = 20_000;
+    let folder = Folder::new();
+    let start = Instant::now();
+    let gltf: Vec<_> = (0..MATERIALS)
+        .map(|k| {
+            let extensions = format!(r#"{{"KHR_materials_anisotropy":{{"anisotropyStrength":{}}}}}"#, k % 500);
+            let (name, roughness) = (k % 7, (k % 997) as f64 / 997.0);
+            let extensions = if k % 40 == 0 { extensions } else { "{}".into() };
+            format!(
+                r#"{{"name":"M{name}","pbrMetallicRoughness":{{"roughnessFactor":{roughness}}},"extensions":{extensions}}}"#
+            )
+        })
+        .collect();
+    let gltf = format!(r#"{{"asset":{{"version":"2.0"}},"materials":[{}]}}"#, gltf.join(","));
+    assert_eq!(folder.read("x.gltf", gltf.as_bytes()).unwrap().materials.len(), MATERIALS);
+    let recipe: Vec<_> = (0..MATERIALS)
+        .map(|k| format!("[materials.m{k}]\nlobes = [{{ model = 'ggx', roughness = 0.5 }}]\n"))
+        .chain((0..MATERIALS).map(|k| format!("[[tables]]\nquantity = 'rho_dh'\nmaterial = 'm{k}'\n")))
+        .collect();
+    assert_eq!(folder.read("x.toml", recipe.concat().as_bytes()).unwrap().tables.len(), MATERIALS);
+    let elapsed = start.elapsed();
+    println!("{elapsed:?}");
+    assert!(elapsed < Duration::from_secs(40), "{elapsed:?}");
+}
+
+/// A buffer of base64 is decoded once, however many images are in it.
+#[test]
+fn a_buffer_of_base64_is_decoded_once() {
+    const IMAGES: usize = 1000;
+    let folder = Folder::new();
+    let list = |element: &dyn Fn(usize) -> String| (0..IMAGES).map(element).collect::<Vec<_>>().join(",");
+    let texture = |k| format!(r#"{{"pbrMetallicRoughness":{{"metallicRoughnessTexture":{{"index":{k}}}}}}}"#);
+    let root = format!(
+        r#"{{"asset":{{"version":"2.0"}},"materials":[{}],"textures":[{}],"images":[{}],"bufferViews":[{}],
+            "buffers":[{{"uri":"data:;base64,{}"}}]}}"#,
+        list(&texture),
+        list(&|k| format!(r#"{{"source":{k}}}"#)),
+        list(&|k| format!(r#"{{"bufferView":{k}}}"#)),
+        list(&|k| format!(r#"{{"buffer":0,"byteOffset":{k},"byteLength":100}}"#)),
+        "A".repeat(1 << 24),
+    );
+    let start = Instant::now();
+    let plan = folder.read("x.gltf", root.as_bytes()).unwrap();
+    assert_eq!((plan.materials.len(), plan.warnings.len()), (IMAGES, IMAGES));
+    assert!(start.elapsed() < Duration::from_secs(15), "{:?}", start.elapsed());
 }
 
 /// A folder with the demo's data.

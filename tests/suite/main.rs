@@ -41,6 +41,8 @@ mod scenes;
 #[cfg(feature = "cli")]
 mod storage;
 mod stream;
+#[cfg(feature = "scene")]
+mod textures;
 mod thin_film;
 mod trade;
 mod truth;

@@ -322,42 +322,28 @@ fn extensions_that_change_the_brdf_are_named_and_idle_ones_are_not() {
 fn broken_files_give_errors_that_name_the_place() {
     let with = |path: &str, value: Value| {
         let mut root = textured(json!({ "uri": "x.png" }), json!({}));
-        merge(
-            &mut root,
-            json!({
-                "meshes": [{ "primitives": [{ "attributes": {}, "material": 0 }] }],
-                "nodes": [{ "children": [1] }, { "children": [2] }, { "children": [], "mesh": 0 }],
-            }),
-        );
+        merge(&mut root, json!({ "meshes": [{ "primitives": [{ "attributes": {}, "material": 0 }] }] }));
         *root.pointer_mut(path).unwrap_or_else(|| panic!("no {path}")) = value;
         root.to_string().into_bytes()
     };
     let pbr = "/materials/0/pbrMetallicRoughness";
-    let huge = json!(4_294_967_294_u32);
     let cases = [
         (Vec::new(), "EOF"),
         (b"{".to_vec(), "line 1"),
         (b"[]".to_vec(), "line 1"),
         (b"\xff\xfe{}".to_vec(), "line 1"),
-        (b"{\"asset\": {\"version\": \"2.0\", \"generator\": \"\xff\"}}".to_vec(), "line 1"),
         (
             format!("{{\"materials\": [{{\"extensions\": {}", "{\"X\": ".repeat(100_000)).into_bytes(),
             "recursion",
         ),
         (json!({ "asset": { "version": "2.0" } }).to_string().into_bytes(), "neither a material nor a mesh"),
         (with("/asset/version", json!("1.0")), "asset.version"),
-        (with("/meshes/0/primitives/0/material", huge.clone()), "meshes[0].primitives[0].material"),
-        (with("/meshes/0/primitives/0/material", json!(-1)), "line 1"),
-        (with(&format!("{pbr}/metallicRoughnessTexture/index"), huge.clone()), "metallicRoughnessTexture"),
-        (with(&format!("{pbr}/baseColorTexture/index"), json!(1)), "textures[1]"),
-        (with("/textures/0/source", huge.clone()), "textures[0]"),
-        (with("/nodes/2/children", json!([0])), "own ancestor"),
-        (with("/nodes/2/children", json!([2])), "own ancestor"),
-        (with("/nodes/0/children/0", huge), "nodes[0].children"),
-        (with(&format!("{pbr}/roughnessFactor"), json!(1.5)), "roughnessFactor is 1.5"),
-        (with(&format!("{pbr}/roughnessFactor"), json!(-0.1)), "materials[0] (M): roughnessFactor"),
-        (with(&format!("{pbr}/metallicFactor"), json!(1e300)), "line 1"),
-        (with(&format!("{pbr}/baseColorFactor/2"), json!(2)), "baseColorFactor[2] is 2"),
+        (
+            with(&format!("{pbr}/roughnessFactor"), json!("0.5")),
+            "materials[0] (M): roughnessFactor is \"0.5\"",
+        ),
+        (with(&format!("{pbr}/baseColorFactor"), json!([1])), "baseColorFactor is no list"),
+        (with("/materials", json!({})), "materials is no list"),
         (
             String::from_utf8(with(&format!("{pbr}/roughnessFactor"), json!("NaN")))
                 .unwrap()
@@ -372,6 +358,168 @@ fn broken_files_give_errors_that_name_the_place() {
         let head = String::from_utf8_lossy(&bytes[..bytes.len().min(40)]).into_owned();
         let message = refused(&write(&folder, "hostile.gltf", bytes));
         assert!(message.contains(place), "{head}: {message:?} does not say {place:?}");
+    }
+}
+
+/// What is wrong in one material, or in what gonio does not need, refuses nothing else.
+#[test]
+fn a_mistake_refuses_only_what_it_is_in() {
+    let good =
+        json!({ "name": "good", "pbrMetallicRoughness": { "roughnessFactor": 0.5, "metallicFactor": 0 } });
+    let bad = |pbr: Value| json!({ "name": "bad", "pbrMetallicRoughness": pbr });
+    let use_both = json!([{ "primitives": [{ "material": 0 }, { "material": 1 }] }]);
+    let with = |bad: Value, more: Value| {
+        let mut root = json!({
+            "asset": { "version": "2.0" }, "materials": [good, bad], "meshes": use_both, "textures": [{ "source": 7 }],
+        });
+        merge(&mut root, more);
+        read_json(&root).unwrap()
+    };
+    let alone = |bad: Value| with(bad, json!({}));
+
+    // Numbers beyond what glTF allows are warned of and taken as the nearest that it does.
+    for (pbr, key, number, taken) in [
+        (json!({ "baseColorFactor": [0.5, 1.00016, 0.5, 1] }), "baseColorFactor[1]", "1.00016", "1"),
+        (json!({ "roughnessFactor": -0.25 }), "roughnessFactor", "-0.25", "0"),
+        (json!({ "metallicFactor": 1e300 }), "metallicFactor", "1", "1"),
+    ] {
+        let scene = alone(bad(pbr));
+        assert_eq!(names(&scene), ["good", "bad"]);
+        let [warning] = &scene.warnings[..] else { panic!("{:?}", scene.warnings) };
+        let said = format!("material bad: {key} is {number}");
+        assert!(warning.starts_with(&said) && warning.ends_with(&format!("taken as {taken}")), "{warning}");
+    }
+    // What is no number is the author's to say; the other material is baked.
+    for pbr in [json!({ "roughnessFactor": "0.5" }), json!({ "baseColorFactor": 1 }), json!(3)] {
+        let scene = alone(bad(pbr));
+        assert_eq!(names(&scene), ["good"]);
+        assert!(
+            scene.warnings[0].starts_with("material bad is not baked: materials[1] (bad): "),
+            "{:?}",
+            scene.warnings
+        );
+        let why = scene.material("bad").unwrap_err().to_string();
+        assert!(why.contains("material bad is not baked: materials[1]"), "{why}");
+    }
+    assert!(read_json(&json!({ "asset": { "version": "2.0" }, "materials": [3] })).is_err());
+    // An index that leads nowhere is a texture of unknown texels.
+    let texture =
+        |index: Value| bad(json!({ "metallicRoughnessTexture": { "index": index }, "roughnessFactor": 0.5 }));
+    for (index, why) in [
+        (json!(5), "there is no textures[5], the file has 1"),
+        (json!(-1), "there is no textures[-1]"),
+        (json!(0), "there is no images[7], the file has 0"),
+        (Value::Null, "it has no index"),
+    ] {
+        let scene = alone(texture(index));
+        assert_eq!(ggx(&scene.materials[1]), &Distribution::uniform(0.0, 0.5));
+        assert!(
+            scene.warnings[0].starts_with("material bad: ") && scene.warnings[0].contains(why),
+            "{:?}",
+            scene.warnings
+        );
+    }
+    let scene = alone(bad(json!({ "baseColorTexture": { "index": 9 } })));
+    assert!(scene.warnings[0].contains("baseColorTexture: there is no textures[9]"), "{:?}", scene.warnings);
+    let scene =
+        with(bad(json!({})), json!({ "meshes": [{ "primitives": [{ "material": 9 }, { "material": 0 }] }] }));
+    assert_eq!(names(&scene), ["good"]);
+    assert!(scene.warnings[0].starts_with("meshes[0].primitives[0].material: there is no materials[9]"));
+
+    // What is not needed.
+    for unneeded in [
+        json!({ "animations": [{ "channels": [{ "sampler": 0, "target": { "path": "scale" } }] }] }),
+        json!({ "scenes": [{ "name": "Scene.001" }], "scene": 4 }),
+        json!({ "nodes": [{ "children": [0], "mesh": -2 }], "skins": "none", "accessors": [{}], "cameras": 1 }),
+        json!({ "extras": "note" }),
+        json!({ "extras": [1, { "extras": 2 }] }),
+    ] {
+        assert_eq!(with(good.clone(), unneeded).warnings, [""; 0]);
+    }
+    let noted = json!({ "name": "noted", "extras": 42, "pbrMetallicRoughness": { "extras": "x", "roughnessFactor": 0.5 },
+        "extensions": { "KHR_materials_ior": { "extras": [null] } } });
+    assert_eq!(alone(noted).warnings, [""; 0]);
+}
+
+#[test]
+fn the_file_says_what_its_readers_must_know() {
+    let mut root = plain();
+    root["extensionsRequired"] = json!(["FOO_bar", "KHR_texture_transform", "KHR_materials_ior"]);
+    root["asset"]["minVersion"] = json!("3.0");
+    let warnings = read_json(&root).unwrap().warnings;
+    assert_eq!(warnings.len(), 2, "{warnings:?}");
+    assert!(warnings[0].contains("asset.minVersion is 3.0") && warnings[1].contains("requires FOO_bar"));
+    root["asset"]["minVersion"] = json!("2.0");
+    assert_eq!(read_json(&root).unwrap().warnings.len(), 1);
+
+    let mut unlit = plain();
+    unlit["materials"][0]["extensions"] = json!({ "KHR_materials_unlit": {} });
+    let why = read_json(&unlit).unwrap_err().to_string();
+    assert!(why.contains("material M: KHR_materials_unlit"), "{why}");
+}
+
+/// Exporters begin with a byte order mark, end a chunk with NUL, and write names in encodings of their own.
+#[test]
+fn text_is_read_as_exporters_write_it() {
+    let folder = TempDir::new().unwrap();
+    let text = plain().to_string();
+    let marked = [b"\xef\xbb\xbf", text.as_bytes()].concat();
+    assert_eq!(names(&read(&write(&folder, "bom.gltf", &marked)).unwrap()), ["M"]);
+    let latin = [b"{\"asset\":{\"version\":\"2.0\"},\"materials\":[{\"name\":\"gr".as_slice(), b"\xfcn\"}]}"]
+        .concat();
+    let scene = read(&write(&folder, "latin.gltf", latin)).unwrap();
+    assert_eq!(names(&scene), ["gr\u{fffd}n"]);
+    assert!(scene.warnings[0].contains("UTF-8"));
+
+    let mut padded = glb(&plain(), &[]);
+    let length = u32::from_le_bytes(padded[12..16].try_into().unwrap()) as usize;
+    let end = 20 + padded[20..20 + length].iter().rposition(|&byte| byte != b' ').unwrap() + 1;
+    padded[end..20 + length].fill(0);
+    let four = padded.splice(20 + length..20 + length, [0; 4]).count();
+    assert_eq!(four, 0);
+    for at in [8, 12] {
+        let length = u32::from_le_bytes(padded[at..at + 4].try_into().unwrap()) + 4;
+        padded[at..at + 4].copy_from_slice(&length.to_le_bytes());
+    }
+    assert_eq!(names(&read(&write(&folder, "padded.glb", padded)).unwrap()), ["M"]);
+}
+
+#[test]
+fn files_are_found_as_exporters_name_them() {
+    let folder = TempDir::new().unwrap();
+    std::fs::create_dir(folder.path().join("textures")).unwrap();
+    write(&folder, "textures/x.png", PNG);
+    write(&folder, "textures/a%20b.png", PNG);
+    write(&folder, "textures/c d.png", PNG);
+    let path = folder.path().display();
+    let uris = [
+        "textures\\x.png".into(),
+        ".\\textures\\c%20d.png".into(),
+        "textures/a%20b.png".into(),
+        "textures/c%20d.png".into(),
+        format!("file://{path}/textures/x.png"),
+        format!("FILE://localhost{path}/textures/c%20d.png"),
+        format!("file:{path}/textures/x.png"),
+        format!("DATA:image/png;base64,{PNG_BASE64}"),
+        format!("  data:image/png;base64,{PNG_BASE64}"),
+    ];
+    for uri in uris {
+        let scene =
+            read(&write(&folder, "x.gltf", textured(json!({ "uri": uri }), json!({})).to_string())).unwrap();
+        assert_eq!(scene.warnings, [""; 0], "{uri}");
+        assert_eq!(ggx(&scene.materials[0]).max(), 0.6, "{uri}");
+    }
+    let long = "A".repeat(10_000);
+    for (uri, why) in [
+        (format!("Data:image/png;base64,@{long}"), "data URI"),
+        (format!("image/png;base64,{long}"), "cannot be read"),
+        ("file://elsewhere/x.png".into(), "the computer elsewhere"),
+        ("HTTPS://example.org/x.png".into(), "HTTPS://"),
+    ] {
+        let scene =
+            read(&write(&folder, "x.gltf", textured(json!({ "uri": uri }), json!({})).to_string())).unwrap();
+        let [warning] = &scene.warnings[..] else { panic!("{:?}", scene.warnings) };
+        assert!(warning.contains(why) && warning.len() < 600, "{warning}");
     }
 }
 
@@ -425,7 +573,6 @@ fn damaged_bytes_never_panic() {
         json!({
             "buffers": [{ "byteLength": PNG.len() }],
             "bufferViews": [{ "buffer": 0, "byteOffset": 0, "byteLength": PNG.len() }],
-            "nodes": [{ "children": [1] }, {}],
         }),
     );
     let whole = glb(&root, &PNG);

@@ -1,11 +1,14 @@
 //! What the extensions of a material mean for its BRDF.
 
-use crate::base::error::{Error, Result};
+use crate::base::error::Result;
 use crate::model;
 use crate::scene::FormulaInput;
+use crate::scene::gltf::fields::{Fields, Texture};
+use crate::scene::gltf::printable;
+use crate::scene::gltf::root::Root;
 use crate::scene::gltf::texels::Channel;
-use crate::scene::gltf::{Texture, texture};
-use ::gltf::json::{self, Root, Value};
+use serde_json::Value;
+use std::cell::RefCell;
 
 /// What the extensions of a material say of its reflection, with defaults for those that it has not.
 pub struct Extended {
@@ -21,8 +24,6 @@ pub struct Extended {
     pub coat: Option<Coat>,
     pub sheen: Option<Sheen>,
     pub diffuse_roughness: Option<Scaled>,
-    /// What of it the tables do not show.
-    pub warnings: Vec<String>,
     /// What it has beside reflection.
     pub left_out: Vec<(&'static str, &'static str)>,
 }
@@ -50,243 +51,205 @@ pub struct Sheen {
 /// A roughness that a channel of a texture may multiply.
 pub struct Scaled {
     /// What messages call it.
-    pub name: &'static str,
+    pub name: String,
     pub factor: f64,
     pub texture: Option<(Texture, Channel)>,
 }
 
 impl Extended {
-    pub fn read(root: &Root, material: &json::Material) -> Result<Self> {
-        let of = |name| Extension { name, root, value: on(material).find(|(n, _)| *n == name).map(|e| e.1) };
-        let (specular, ior) = (of("KHR_materials_specular"), of("KHR_materials_ior").ior()?);
-        let transmission = of("KHR_materials_transmission");
-        let diffuse_transmission = of("KHR_materials_diffuse_transmission");
-        let emissive = of("KHR_materials_emissive_strength").value.is_some();
-        let mut warnings = Vec::new();
-        let film = of("KHR_materials_iridescence").film(&mut warnings)?;
+    /// `base` is the material's `pbrMetallicRoughness`.
+    pub fn read(
+        root: &Root,
+        material: &Value,
+        base: &Fields,
+        warnings: &RefCell<Vec<String>>,
+    ) -> Result<Self> {
+        let none = Value::Null;
+        let extension = |name: &str| {
+            let value = on(material).find(|(known, _)| *known == name).map_or(&none, |(_, value)| value);
+            Fields::new(name, root, value, warnings)
+        };
+        for (name, what) in unmodelled(material) {
+            warnings.borrow_mut().push(format!("{name} is not modelled: {what}"));
+        }
+        let film = film(&extension("KHR_materials_iridescence")?)?;
+        let specular = extension("KHR_materials_specular")?;
+        let ior = ior(&extension("KHR_materials_ior")?)?;
+        let transmission = extension("KHR_materials_transmission")?;
+        let diffuse_transmission = extension("KHR_materials_diffuse_transmission")?;
+        let emissive = extension("KHR_materials_emissive_strength")?.is_there();
         let extended = Self {
-            f0: specular.dielectric_f0(ior)?,
-            specular: specular.strength("specular", "specularFactor", 1.0, "specularTexture")?,
-            transmission: transmission.strength(
+            f0: dielectric_f0(&specular, ior)?,
+            specular: strength(&specular, "specular", "specularFactor", 1.0, "specularTexture")?,
+            transmission: strength(
+                &transmission,
                 "transmission",
                 "transmissionFactor",
                 0.0,
                 "transmissionTexture",
             )?,
-            diffuse_transmission: diffuse_transmission.strength(
+            diffuse_transmission: strength(
+                &diffuse_transmission,
                 "diffuse_transmission",
                 "diffuseTransmissionFactor",
                 0.0,
                 "diffuseTransmissionTexture",
             )?,
-            strength: of("KHR_materials_anisotropy").anisotropy(&mut warnings)?,
+            strength: anisotropy(&extension("KHR_materials_anisotropy")?)?,
             film,
-            coat: of("KHR_materials_clearcoat").coat(material, &mut warnings)?,
-            sheen: of("KHR_materials_sheen").sheen()?,
-            diffuse_roughness: of("KHR_materials_diffuse_roughness").diffuse_roughness()?,
+            coat: coat(&extension("KHR_materials_clearcoat")?, material)?,
+            sheen: sheen(&extension("KHR_materials_sheen")?)?,
+            diffuse_roughness: diffuse_roughness(&extension("KHR_materials_diffuse_roughness")?)?,
             left_out: emissive
                 .then_some(("KHR_materials_emissive_strength", "what it emits is no reflection"))
                 .into_iter()
                 .collect(),
-            warnings: Vec::new(),
         };
-        let not = |(name, what)| format!("{name} is not modelled: {what}");
-        let not_modelled = unmodelled(material).into_iter().map(not);
-        let diffuse_varies = material.pbr_metallic_roughness.metallic_factor.0 < 1.0;
         if let Some(film) = &extended.film {
-            warnings.extend(film.warnings(material, &extended, diffuse_varies));
+            film.warn(base, &extended, warnings)?;
         }
-        Ok(Self { warnings: not_modelled.chain(warnings).collect(), ..extended })
+        Ok(extended)
     }
 }
 
 impl Film {
-    /// What its tables do not show: F of a film is not linear in the F0 of what is below.
-    fn warnings(&self, material: &json::Material, extended: &Extended, has_diffuse: bool) -> Vec<String> {
+    /// Warns of what its tables do not show: F of a film is not linear in the F0 of what is below.
+    fn warn(&self, base: &Fields, extended: &Extended, warnings: &RefCell<Vec<String>>) -> Result<()> {
         const NAME: &str = "KHR_materials_iridescence";
-        let pbr = &material.pbr_metallic_roughness;
-        let mut warnings = Vec::new();
-        let metal = pbr.metallic_factor.0 > 0.0 && pbr.base_color_texture.is_some();
+        let metallic = base.get("metallicFactor").and_then(Value::as_f64).unwrap_or(1.0);
+        let metal = metallic > 0.0 && base.get("baseColorTexture").is_some();
+        let mut warnings = warnings.borrow_mut();
         if metal || extended.f0.varies() || extended.specular.varies() {
             warnings.push(format!(
                 "{NAME}: what is below the film varies; its tables are of the factors without their textures"
             ));
         }
-        if has_diffuse || pbr.metallic_roughness_texture.is_some() {
+        if metallic < 1.0 || base.get("metallicRoughnessTexture").is_some() {
             warnings.push(format!(
                 "{NAME}: the diffuse lobe below the film has what is left without a film, not 1 − max F of the film"
             ));
         }
-        warnings
+        Ok(())
     }
 }
 
-/// An extension of a material; `None`: the material has it not.
-struct Extension<'a> {
+/// A factor in [0, 1] that a texture may multiply.
+fn strength(
+    fields: &Fields,
     name: &'static str,
-    root: &'a Root,
-    value: Option<&'a Value>,
+    factor: &str,
+    default: f64,
+    texture: &str,
+) -> Result<FormulaInput> {
+    let value = fields.number(factor, default, [0.0, 1.0])?;
+    let varies = fields.is_textured(texture) && value > 0.0;
+    Ok(FormulaInput { name, value: [value; 3], least: varies.then_some(0.0) })
 }
 
-impl Extension<'_> {
-    /// A number of a range.
-    fn number(&self, key: &str, default: f64, range: [f64; 2]) -> Result<f64> {
-        let Some(value) = self.value.and_then(|value| value.get(key)) else { return Ok(default) };
-        self.checked(key, value, range)
+fn ior(fields: &Fields) -> Result<f64> {
+    match fields.get("ior").and_then(Value::as_f64) {
+        Some(0.0) => Ok(0.0),
+        _ => fields.number("ior", 1.5, [1.0, f64::MAX]),
     }
+}
 
-    fn checked(&self, key: &str, value: &Value, [low, high]: [f64; 2]) -> Result<f64> {
-        let number = value.as_f64().filter(|number| (low..=high).contains(number));
-        number.ok_or_else(|| {
-            let value = crate::scene::gltf::printable(&value.to_string());
-            let allowed =
-                if high < f64::MAX { format!("in [{low}, {high}]") } else { format!("from {low} on") };
-            Error::input(format!(
-                "{}: {key} is {value}, which glTF does not allow; correct it to a number {allowed}",
-                self.name
-            ))
-        })
-    }
+/// min(((ior − 1)/(ior + 1))² specularColor, 1); an ior of 0 stands for ∞.
+fn dielectric_f0(specular: &Fields, ior: f64) -> Result<FormulaInput> {
+    let f0 = match ior {
+        0.0 => 1.0,
+        1.5 => 0.04,
+        ior => ((ior - 1.0) / (ior + 1.0)).powi(2),
+    };
+    let color = specular.color("specularColorFactor", 1.0, [0.0, f64::MAX])?;
+    let value = color.map(|color| (f0 * color).min(1.0));
+    let varies = specular.is_textured("specularColorTexture") && value != [0.0; 3];
+    Ok(FormulaInput { name: "dielectric_f0", value, least: varies.then_some(0.0) })
+}
 
-    /// R, G and B.
-    fn color(&self, key: &str, default: f64, range: [f64; 2]) -> Result<[f64; 3]> {
-        let Some(value) = self.value.and_then(|value| value.get(key)) else { return Ok([default; 3]) };
-        let list = value.as_array().map(Vec::as_slice).unwrap_or_default();
-        let [r, g, b] = list else {
-            return Err(Error::input(format!(
-                "{}: {key} is no list of three numbers; correct it",
-                self.name
-            )));
-        };
-        Ok([self.checked(key, r, range)?, self.checked(key, g, range)?, self.checked(key, b, range)?])
+/// The strength of anisotropy, the largest where a texture has it.
+fn anisotropy(fields: &Fields) -> Result<f64> {
+    let strength = fields.number("anisotropyStrength", 0.0, [0.0, 1.0])?;
+    let rotation = fields.number("anisotropyRotation", 0.0, [-f64::MAX, f64::MAX])?;
+    let textured = fields.is_textured("anisotropyTexture");
+    let say = |what: String| fields.warn(format!("KHR_materials_anisotropy: {what}"));
+    match (strength > 0.0, textured) {
+        (false, _) => {}
+        (true, true) => say(format!(
+            "its texture varies strength and direction; the tables are of strength {strength}, and of \
+             azimuths from the texture's direction, turned by {rotation} rad"
+        )),
+        (true, false) if rotation != 0.0 => say(format!(
+            "the tables' azimuths are from the direction of anisotropy: turn the tangent frame by \
+             anisotropyRotation, {rotation} rad"
+        )),
+        (true, false) => {}
     }
+    Ok(strength)
+}
 
-    /// The texture of a key, looked up.
-    fn texture(&self, key: &str) -> Result<Option<Texture>> {
-        let Some(info) = self.value.and_then(|value| value.get(key)) else { return Ok(None) };
-        let at = |e: Error| e.at(format!("{}.{key}", self.name));
-        let index = info.get("index").and_then(index);
-        let index = index.ok_or_else(|| at(Error::input("it has no index; export the file again")))?;
-        texture(self.root, index).map(Some).map_err(at)
+/// The film, if it is there and we have it.
+fn film(fields: &Fields) -> Result<Option<Film>> {
+    const MOST: f64 = 2000.0;
+    let factor = strength(fields, "iridescence", "iridescenceFactor", 0.0, "iridescenceTexture")?;
+    let eta = fields.number("iridescenceIor", 1.3, [1.0, f64::MAX])?;
+    let least = fields.number("iridescenceThicknessMinimum", 100.0, [0.0, f64::MAX])?;
+    let most = fields.number("iridescenceThicknessMaximum", 400.0, [0.0, f64::MAX])?;
+    let textured = fields.is_textured("iridescenceThicknessTexture");
+    if factor.value == [0.0; 3] {
+        return Ok(None);
     }
+    let say = |what: String| fields.warn(format!("KHR_materials_iridescence: {what}"));
+    if textured && least != most {
+        say(format!(
+            "its texture varies the thickness from {least} to {most} nm; the tables are of {most} nm"
+        ));
+    }
+    if most > MOST {
+        say(format!("a film of {most} nm has no colour; the tables are of {MOST} nm"));
+    }
+    let film = Film { factor, thickness: most.min(MOST), eta };
+    if let Some(why) = film.refused()? {
+        say(format!("{why}; the film is left out of the tables"));
+        return Ok(None);
+    }
+    Ok(Some(film))
+}
 
-    /// A factor in [0, 1] that a texture may multiply.
-    fn strength(
-        &self,
-        name: &'static str,
-        factor: &str,
-        default: f64,
-        texture: &str,
-    ) -> Result<FormulaInput> {
-        let value = self.number(factor, default, [0.0, 1.0])?;
-        let varies = self.texture(texture)?.is_some() && value > 0.0;
-        Ok(FormulaInput { name, value: [value; 3], least: varies.then_some(0.0) })
+fn coat(fields: &Fields, material: &Value) -> Result<Option<Coat>> {
+    let factor = strength(fields, "clearcoat", "clearcoatFactor", 0.0, "clearcoatTexture")?;
+    let roughness =
+        scaled(fields, ["clearcoatRoughnessFactor", "clearcoatRoughnessTexture"], Channel::Green)?;
+    if factor.value == [0.0; 3] {
+        return Ok(None);
     }
+    let own = fields.get("clearcoatNormalTexture").map(|texture| &texture["index"]);
+    if own != material.get("normalTexture").map(|texture| &texture["index"]) {
+        fields.warn(
+            "KHR_materials_clearcoat: the coat's normal map is not that of what it coats; the tables are of one \
+             normal for both"
+                .into(),
+        );
+    }
+    Ok(Some(Coat { factor, roughness }))
+}
 
-    fn ior(&self) -> Result<f64> {
-        match self.value.and_then(|value| value.get("ior")).map(|ior| ior.as_f64()) {
-            Some(Some(0.0)) => Ok(0.0),
-            _ => self.number("ior", 1.5, [1.0, f64::MAX]),
-        }
-    }
+fn sheen(fields: &Fields) -> Result<Option<Sheen>> {
+    let value = fields.color("sheenColorFactor", 0.0, [0.0, 1.0])?;
+    let varies = fields.is_textured("sheenColorTexture");
+    let roughness = scaled(fields, ["sheenRoughnessFactor", "sheenRoughnessTexture"], Channel::Alpha)?;
+    let color = FormulaInput { name: "sheen_color", value, least: varies.then_some(0.0) };
+    Ok((value != [0.0; 3]).then_some(Sheen { color, roughness }))
+}
 
-    /// min(((ior − 1)/(ior + 1))² specularColor, 1); an ior of 0 stands for ∞.
-    fn dielectric_f0(&self, ior: f64) -> Result<FormulaInput> {
-        let f0 = match ior {
-            0.0 => 1.0,
-            1.5 => 0.04,
-            ior => ((ior - 1.0) / (ior + 1.0)).powi(2),
-        };
-        let color = self.color("specularColorFactor", 1.0, [0.0, f64::MAX])?;
-        let value = color.map(|color| (f0 * color).min(1.0));
-        let varies = self.texture("specularColorTexture")?.is_some() && value != [0.0; 3];
-        Ok(FormulaInput { name: "dielectric_f0", value, least: varies.then_some(0.0) })
-    }
+fn diffuse_roughness(fields: &Fields) -> Result<Option<Scaled>> {
+    let roughness = scaled(fields, ["diffuseRoughnessFactor", "diffuseRoughnessTexture"], Channel::Red)?;
+    Ok((roughness.factor > 0.0).then_some(roughness))
+}
 
-    /// The strength, the largest where a texture has it.
-    fn anisotropy(&self, warnings: &mut Vec<String>) -> Result<f64> {
-        let strength = self.number("anisotropyStrength", 0.0, [0.0, 1.0])?;
-        let rotation = self.number("anisotropyRotation", 0.0, [-f64::MAX, f64::MAX])?;
-        let textured = self.texture("anisotropyTexture")?.is_some();
-        let name = self.name;
-        match (strength > 0.0, textured) {
-            (false, _) => {}
-            (true, true) => warnings.push(format!(
-                "{name}: its texture varies strength and direction; the tables are of strength {strength}, and of \
-                 azimuths from the texture's direction, turned by {rotation} rad"
-            )),
-            (true, false) if rotation != 0.0 => warnings.push(format!(
-                "{name}: the tables' azimuths are from the direction of anisotropy: turn the tangent frame by \
-                 anisotropyRotation, {rotation} rad"
-            )),
-            (true, false) => {}
-        }
-        Ok(strength)
-    }
-
-    /// The film, if it is there and we have it.
-    fn film(&self, warnings: &mut Vec<String>) -> Result<Option<Film>> {
-        const MOST: f64 = 2000.0;
-        let factor = self.strength("iridescence", "iridescenceFactor", 0.0, "iridescenceTexture")?;
-        let eta = self.number("iridescenceIor", 1.3, [1.0, f64::MAX])?;
-        let least = self.number("iridescenceThicknessMinimum", 100.0, [0.0, f64::MAX])?;
-        let most = self.number("iridescenceThicknessMaximum", 400.0, [0.0, f64::MAX])?;
-        let textured = self.texture("iridescenceThicknessTexture")?.is_some();
-        if factor.value == [0.0; 3] {
-            return Ok(None);
-        }
-        let name = self.name;
-        if textured && least != most {
-            warnings.push(format!(
-                "{name}: its texture varies the thickness from {least} to {most} nm; the tables are of {most} nm"
-            ));
-        }
-        if most > MOST {
-            warnings.push(format!("{name}: a film of {most} nm has no colour; the tables are of {MOST} nm"));
-        }
-        let film = Film { factor, thickness: most.min(MOST), eta };
-        if let Some(why) = film.refused()? {
-            warnings.push(format!("{name}: {why}; the film is left out of the tables"));
-            return Ok(None);
-        }
-        Ok(Some(film))
-    }
-
-    fn coat(&self, material: &json::Material, warnings: &mut Vec<String>) -> Result<Option<Coat>> {
-        let factor = self.strength("clearcoat", "clearcoatFactor", 0.0, "clearcoatTexture")?;
-        let roughness =
-            self.scaled(["clearcoatRoughnessFactor", "clearcoatRoughnessTexture"], Channel::Green)?;
-        let own = self.texture("clearcoatNormalTexture")?.map(|texture| texture.index);
-        if factor.value == [0.0; 3] {
-            return Ok(None);
-        }
-        if own != material.normal_texture.as_ref().map(|info| info.index.value()) {
-            warnings.push(format!(
-                "{}: the coat's normal map is not that of what it coats; the tables are of one normal for both",
-                self.name
-            ));
-        }
-        Ok(Some(Coat { factor, roughness }))
-    }
-
-    fn sheen(&self) -> Result<Option<Sheen>> {
-        let value = self.color("sheenColorFactor", 0.0, [0.0, 1.0])?;
-        let varies = self.texture("sheenColorTexture")?.is_some();
-        let roughness = self.scaled(["sheenRoughnessFactor", "sheenRoughnessTexture"], Channel::Alpha)?;
-        let color = FormulaInput { name: "sheen_color", value, least: varies.then_some(0.0) };
-        Ok((value != [0.0; 3]).then_some(Sheen { color, roughness }))
-    }
-
-    fn diffuse_roughness(&self) -> Result<Option<Scaled>> {
-        let roughness = self.scaled(["diffuseRoughnessFactor", "diffuseRoughnessTexture"], Channel::Red)?;
-        Ok((roughness.factor > 0.0).then_some(roughness))
-    }
-
-    fn scaled(&self, [factor, texture]: [&'static str; 2], channel: Channel) -> Result<Scaled> {
-        let value = self.number(factor, 0.0, [0.0, 1.0])?;
-        let texture_of = self.texture(texture)?.map(|texture| (texture, channel));
-        Ok(Scaled { name: texture, factor: value, texture: texture_of })
-    }
+fn scaled(fields: &Fields, [factor, texture]: [&str; 2], channel: Channel) -> Result<Scaled> {
+    let factor = fields.number(factor, 0.0, [0.0, 1.0])?;
+    let of = fields.texture(texture).map(|texture| (texture, channel));
+    Ok(Scaled { name: fields.name(texture), factor, texture: of })
 }
 
 impl Film {
@@ -360,23 +323,60 @@ const MODELLED: &[&str] = &[
 const HARMLESS: &[&str] =
     &["KHR_materials_emissive_strength", "KHR_materials_unlit", "KHR_xmp_json_ld", "KHR_animation_pointer"];
 
+/// Extensions that textures, meshes and nodes may require and that leave every material as it is.
+const BESIDE_MATERIALS: &[&str] = &[
+    "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
+    "EXT_texture_avif",
+    "EXT_texture_webp",
+    "KHR_draco_mesh_compression",
+    "KHR_lights_punctual",
+    "KHR_materials_variants",
+    "KHR_mesh_quantization",
+    "KHR_meshopt_compression",
+    "KHR_node_visibility",
+    "KHR_texture_basisu",
+    "KHR_texture_transform",
+    "MSFT_texture_dds",
+];
+
+/// Warnings of what the file says that its readers must know, and gonio does not.
+pub fn required(root: &Root) -> Vec<String> {
+    let listed = root.extensions_required.as_array().into_iter().flatten().filter_map(Value::as_str);
+    let is_known = |name: &str| {
+        let known = [MODELLED, HARMLESS, BESIDE_MATERIALS];
+        known.iter().any(|list| list.contains(&name)) || UNMODELLED.iter().any(|e| e.name == name)
+    };
+    let unknown = listed.filter(|name| !is_known(name)).map(|name| {
+        let name = printable(name);
+        format!("the file requires {name}, which gonio does not know; if it changes a BRDF, the tables do not show it")
+    });
+    let version = root.asset["minVersion"].as_str().filter(|version| {
+        let mut numbers = version.split('.').map(str::parse::<u32>);
+        !matches!((numbers.next(), numbers.next()), (Some(Ok(0..=1)), _) | (Some(Ok(2)), None | Some(Ok(0))))
+    });
+    let newer = version.map(|version| {
+        let version = printable(version);
+        format!("asset.minVersion is {version}, and gonio reads glTF 2.0: what is new since then is not in the tables")
+    });
+    newer.into_iter().chain(unknown).collect()
+}
+
 /// The extensions of a material, by name.
-pub fn on(material: &json::Material) -> impl Iterator<Item = (&str, &Value)> {
-    material.extensions.iter().flat_map(|e| &e.others).map(|(name, value)| (name.as_str(), value))
+pub fn on(material: &Value) -> impl Iterator<Item = (&str, &Value)> {
+    let extensions = material["extensions"].as_object().into_iter().flatten();
+    extensions.map(|(name, value)| (name.as_str(), value))
 }
 
 /// The extensions of a material that change its BRDF, or may, with what is missing in the tables.
-fn unmodelled(material: &json::Material) -> Vec<(String, &'static str)> {
+fn unmodelled(material: &Value) -> Vec<(String, &'static str)> {
     let known = |name: &&str| HARMLESS.contains(name) || MODELLED.contains(name);
     let not_harmless = on(material).filter(|(name, _)| !known(name));
     not_harmless
         .filter_map(|(name, value)| match UNMODELLED.iter().find(|e| e.name == name) {
             Some(known) if known.is_idle(value) => None,
             Some(known) => Some((name.into(), known.effect)),
-            None => Some((
-                crate::scene::gltf::printable(name),
-                "if it changes the BRDF, the tables do not show it",
-            )),
+            None => Some((printable(name), "if it changes the BRDF, the tables do not show it")),
         })
         .collect()
 }
@@ -392,20 +392,4 @@ impl Unmodelled {
                 Some(value) => is_neutral(value),
             })
     }
-}
-
-/// The materials that KHR_materials_variants can put on a primitive.
-pub fn variant_materials(on: &json::extensions::mesh::Primitive) -> impl Iterator<Item = usize> {
-    let mappings = on.others.get("KHR_materials_variants").and_then(|v| v.get("mappings")?.as_array());
-    mappings.into_iter().flatten().filter_map(|mapping| index(mapping.get("material")?))
-}
-
-/// The image that an extension (KHR_texture_basisu, EXT_texture_webp, …) gives a texture.
-pub fn texture_source(on: &json::extensions::texture::Texture) -> Option<usize> {
-    on.others.values().find_map(|extension| index(extension.get("source")?))
-}
-
-/// An index as it stands; one beyond usize is out of any list's range all the same.
-fn index(value: &Value) -> Option<usize> {
-    value.as_u64().map(|index| usize::try_from(index).unwrap_or(usize::MAX))
 }

@@ -2,13 +2,14 @@
 
 use crate::base::error::Result;
 use crate::scene::gltf::extensions::{Extended, Scaled};
-use crate::scene::gltf::file::GltfFile;
+use crate::scene::gltf::fields::{Fields, Texture};
+use crate::scene::gltf::file::{GltfFile, Images};
 use crate::scene::gltf::layers::Layers;
+use crate::scene::gltf::root::Root;
 use crate::scene::gltf::texels::{Channel, Texels};
-use crate::scene::gltf::{Texture, texture, unit};
 use crate::scene::{Distribution, FormulaInput, LeftOut, Material, Scene};
-use ::gltf::json::{self, Root};
-use std::collections::BTreeMap;
+use serde_json::Value;
+use std::cell::RefCell;
 
 /// A material of the file, with its numbers checked and its textures looked up, not yet decoded.
 pub struct MaterialSource {
@@ -20,39 +21,42 @@ pub struct MaterialSource {
     extended: Extended,
 }
 
-/// Decoded images, by index; what cannot be read says why.
-type Images = BTreeMap<usize, Result<Texels, String>>;
-
 impl MaterialSource {
-    pub fn check(root: &Root, material: &json::Material, name: &str, vertex_colors: bool) -> Result<Self> {
-        let pbr = &material.pbr_metallic_roughness;
-        let [r, g, b, _] = pbr.base_color_factor.0.map(exact);
-        if let Some(info) = &pbr.base_color_texture {
-            texture(root, info.index.value()).map_err(|e| e.at("baseColorTexture"))?;
-        }
-        let metallic_roughness = pbr.metallic_roughness_texture.as_ref();
-        let value =
-            [unit("baseColorFactor[0]", r)?, unit("baseColorFactor[1]", g)?, unit("baseColorFactor[2]", b)?];
+    /// Reads the numbers of a material. The warnings are of what is corrected, and of what the tables do not show.
+    ///
+    /// # Errors
+    /// When one of them is no number: what its author meant is then unknown.
+    pub fn check(
+        root: &Root,
+        material: &Value,
+        name: &str,
+        vertex_colors: bool,
+        warnings: &RefCell<Vec<String>>,
+    ) -> Result<Self> {
+        Fields::new("it", root, material, warnings)?;
+        Fields::new("extensions", root, &material["extensions"], warnings)?;
+        let pbr = Fields::new("pbrMetallicRoughness", root, &material["pbrMetallicRoughness"], warnings)?;
+        let pbr = pbr.nameless();
+        let unit = |key| pbr.number(key, 1.0, [0.0, 1.0]).map(|x| exact(x as f32));
+        let value = pbr.color("baseColorFactor", 1.0, [0.0, 1.0])?.map(|x| exact(x as f32));
         // Black stays black.
-        let base_color_varies = (pbr.base_color_texture.is_some() || vertex_colors) && value != [0.0; 3];
+        let base_color_varies = (pbr.is_textured("baseColorTexture") || vertex_colors) && value != [0.0; 3];
         Ok(Self {
             name: name.into(),
             base_color: FormulaInput { name: "base_color", value, least: base_color_varies.then_some(0.0) },
-            metallic: unit("metallicFactor", exact(pbr.metallic_factor.0))?,
-            roughness: unit("roughnessFactor", exact(pbr.roughness_factor.0))?,
-            texture: metallic_roughness
-                .map(|info| texture(root, info.index.value()).map_err(|e| e.at("metallicRoughnessTexture")))
-                .transpose()?,
-            extended: Extended::read(root, material)?,
+            metallic: unit("metallicFactor")?,
+            roughness: unit("roughnessFactor")?,
+            texture: pbr.texture("metallicRoughnessTexture"),
+            extended: Extended::read(root, material, &pbr, warnings)?,
         })
     }
 
     /// The images whose texels decide this material's ranges; none where the factors leave them no say.
     pub fn images(&self) -> impl Iterator<Item = usize> {
         let matters = self.roughness > 0.0 || self.metallic > 0.0;
-        let own = self.texture.filter(|_| matters);
+        let own = self.texture.iter().filter(move |_| matters);
         let scaled = self.scaled().filter_map(|scaled| scaled.needs()).map(|(texture, _)| texture);
-        own.into_iter().chain(scaled).filter_map(|texture| texture.image)
+        own.chain(scaled).filter_map(|texture| texture.image.clone().ok())
     }
 
     /// The roughnesses of its extensions.
@@ -62,19 +66,14 @@ impl MaterialSource {
         coat.chain(sheen.iter().map(|sheen| &sheen.roughness)).chain(diffuse_roughness)
     }
 
-    /// What of its extensions the tables do not show.
-    pub fn warnings(&self) -> impl Iterator<Item = String> {
-        self.extended.warnings.iter().map(|warning| format!("material {}: {warning}", self.name))
-    }
-
     pub fn read(&self, file: &GltfFile, images: &Images, scene: &mut Scene) -> Material {
         let mut warn = |what: &str, (label, why): (String, String), ranges: String| {
             scene.warnings.push(format!(
-                "material {}: {what} {label}: {why}; {ranges}; give a PNG or JPEG for tables that fit",
+                "material {}: {what} {label}: {why}; {ranges}; give a whole PNG or JPEG for tables that fit",
                 self.name
             ));
         };
-        let (roughness, [least, most]) = match self.texture {
+        let (roughness, [least, most]) = match &self.texture {
             None => (Distribution::constant(self.roughness), [self.metallic; 2]),
             Some(_) if self.roughness == 0.0 && self.metallic == 0.0 => {
                 (Distribution::constant(0.0), [0.0; 2])
@@ -96,10 +95,10 @@ impl MaterialSource {
         let mut scaled = |what: &str, scaled: &Scaled| match scaled.needs() {
             None => Distribution::constant(scaled.factor),
             Some((texture, channel)) => match texels(texture, file, images) {
-                Ok(texels) => texels.roughness(channel, scaled.factor),
+                Ok(texels) => texels.roughness(*channel, scaled.factor),
                 Err(why) => {
                     let ranges = format!("{what} is taken over all of [0, {}]", scaled.factor);
-                    warn(scaled.name, why, ranges);
+                    warn(&scaled.name, why, ranges);
                     Distribution::uniform(0.0, scaled.factor)
                 }
             },
@@ -142,8 +141,8 @@ impl MaterialSource {
 
 impl Scaled {
     /// The texture, where the factor leaves it a say.
-    fn needs(&self) -> Option<(Texture, Channel)> {
-        self.texture.filter(|_| self.factor > 0.0)
+    fn needs(&self) -> Option<&(Texture, Channel)> {
+        self.texture.as_ref().filter(|_| self.factor > 0.0)
     }
 }
 
@@ -153,12 +152,18 @@ fn exact(value: f32) -> f64 {
 }
 
 /// What an image holds; else what it is called and why it cannot be read.
-fn texels<'a>(texture: Texture, file: &GltfFile, images: &'a Images) -> Result<&'a Texels, (String, String)> {
-    let Texture { index, image } = texture;
-    match image.map(|i| (i, images.get(&i))) {
-        Some((_, Some(Ok(texels)))) => Ok(texels),
-        Some((i, Some(Err(why)))) => Err((file.image_label(i), why.clone())),
-        Some((i, None)) => Err((file.image_label(i), "it was not read".into())),
-        None => Err((format!("textures[{index}]"), "it names no image".into())),
+fn texels<'a>(
+    texture: &Texture,
+    file: &GltfFile,
+    images: &'a Images,
+) -> Result<&'a Texels, (String, String)> {
+    let image = match &texture.image {
+        Ok(image) => *image,
+        Err(why) => return Err((format!("textures[{}]", texture.index), why.clone())),
+    };
+    match images.get(&image).map(|image| &**image) {
+        Some(Ok(texels)) => Ok(texels),
+        Some(Err(why)) => Err((file.image_label(image), why.clone())),
+        None => Err((file.image_label(image), "it was not read".into())),
     }
 }

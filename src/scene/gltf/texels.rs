@@ -1,11 +1,15 @@
 //! What a texture holds: roughness in G and metalness in B, or in other channels what extensions say, all of it linear.
+//!
+//! A decoder that goes on behind damage makes a picture that nobody painted. So each format is checked to be whole, by its
+//! own checksums or by the count of its data, before its texels are believed.
 
 use crate::scene::Distribution;
-use crate::scene::gltf::ktx2;
+use crate::scene::gltf::{jpeg, ktx2, png};
 use image::{DynamicImage, ImageReader, Limits};
 use std::io::Cursor;
+use std::sync::{Mutex, PoisonError};
 
-/// How often each level occurs. Texels that no geometry shows count too, and filtering a texture
+/// How often each level occurs in R, G, B and A. Texels that no geometry shows count too, and filtering a texture
 /// never leaves the range of its texels: the ranges are never too narrow.
 #[derive(Debug)]
 pub struct Texels([Vec<u64>; 4]);
@@ -20,37 +24,90 @@ pub enum Channel {
 }
 
 /// No texture of a real scene is larger; a decompression bomb is.
-pub const MAX_SIDE: u32 = 1 << 14;
+const MAX_SIDE: u32 = 1 << 14;
+
+/// Pictures of more texels are decoded one at a time.
+const LARGE: u64 = 1 << 24;
+
+/// Which of a texel's numbers R, G, B and A are; a channel that it has not is 0, and A 1.
+type Sources = [Option<usize>; 4];
+
+const GREY: Sources = [Some(0), Some(0), Some(0), None];
+const GREY_ALPHA: Sources = [Some(0), Some(0), Some(0), Some(1)];
+const RGB: Sources = [Some(0), Some(1), Some(2), None];
+const RGBA: Sources = [Some(0), Some(1), Some(2), Some(3)];
 
 impl Texels {
     /// Decodes a PNG, a JPEG or the pixels of a KTX2; the error is the reason, for a message.
     pub fn decode(bytes: &[u8]) -> Result<Self, String> {
+        static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
         if let Some(format) = undecodable(bytes) {
             return Err(format!("{format} is not decoded"));
         }
-        if bytes.starts_with(KTX2) {
-            return Self::of(&ktx2::decode(bytes)?);
+        if bytes.starts_with(ktx2::MAGIC) {
+            return ktx2::decode(bytes);
         }
-        let mut reader =
-            ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
-        let mut limits = Limits::default(); // at most 512 MiB
-        limits.max_image_width = Some(MAX_SIDE);
-        limits.max_image_height = Some(MAX_SIDE);
-        reader.limits(limits);
-        Self::of(&reader.decode().map_err(|e| format!("cannot be decoded ({e})"))?)
+        let broken = |why: String| format!("cannot be decoded ({why})");
+        if bytes.starts_with(png::MAGIC) {
+            png::check(bytes).map_err(broken)?;
+        } else if bytes.starts_with(jpeg::MAGIC) {
+            jpeg::check(bytes).map_err(broken)?;
+        }
+        let reader = || ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string());
+        let size = reader()?.into_dimensions().map_err(|e| broken(e.to_string()))?;
+        check_size(size.into())?;
+        let large = u64::from(size.0) * u64::from(size.1) > LARGE;
+        let _alone = large.then(|| ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner));
+        let mut reader = reader()?;
+        reader.limits(Limits::default()); // at most 512 MiB
+        Self::of(&reader.decode().map_err(|e| broken(e.to_string()))?)
     }
 
     fn of(image: &DynamicImage) -> Result<Self, String> {
+        let mut texels =
+            Self::none(image.color().bits_per_pixel() > 8 * u16::from(image.color().channel_count()));
         match image {
-            DynamicImage::ImageLuma8(i) => Ok(Self::count(i, 1, [0, 0, 0])),
-            DynamicImage::ImageLumaA8(i) => Ok(Self::count(i, 2, [0, 0, 0])),
-            DynamicImage::ImageRgb8(i) => Ok(Self::count(i, 3, [0, 1, 2])),
-            DynamicImage::ImageRgba8(i) => Ok(Self::count(i, 4, [0, 1, 2])),
-            DynamicImage::ImageLuma16(i) => Ok(Self::count(i, 1, [0, 0, 0])),
-            DynamicImage::ImageLumaA16(i) => Ok(Self::count(i, 2, [0, 0, 0])),
-            DynamicImage::ImageRgb16(i) => Ok(Self::count(i, 3, [0, 1, 2])),
-            DynamicImage::ImageRgba16(i) => Ok(Self::count(i, 4, [0, 1, 2])),
-            _ => Err("its pixels are neither 8 nor 16 bit".into()),
+            DynamicImage::ImageLuma8(i) => texels.add(i, 1, GREY),
+            DynamicImage::ImageLumaA8(i) => texels.add(i, 2, GREY_ALPHA),
+            DynamicImage::ImageRgb8(i) => texels.add(i, 3, RGB),
+            DynamicImage::ImageRgba8(i) => texels.add(i, 4, RGBA),
+            DynamicImage::ImageLuma16(i) => texels.add(i, 1, GREY),
+            DynamicImage::ImageLumaA16(i) => texels.add(i, 2, GREY_ALPHA),
+            DynamicImage::ImageRgb16(i) => texels.add(i, 3, RGB),
+            DynamicImage::ImageRgba16(i) => texels.add(i, 4, RGBA),
+            _ => return Err("its pixels are neither 8 nor 16 bit".into()),
+        }
+        Ok(texels)
+    }
+
+    /// No texels yet, of 8 or 16 bits a channel.
+    pub fn none(is_deep: bool) -> Self {
+        Self(std::array::from_fn(|_| vec![0; 1 << if is_deep { 16 } else { 8 }]))
+    }
+
+    /// Counts pixels of so many interleaved channels, two bytes each where the texels are deep.
+    pub fn add_bytes(&mut self, bytes: &[u8], channels: usize, sources: Sources) {
+        if self.0[0].len() == 256 {
+            return self.add(bytes, channels, sources);
+        }
+        let pairs = bytes.chunks_exact(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]]));
+        self.add(&pairs.collect::<Vec<_>>(), channels, sources);
+    }
+
+    fn add<T: Copy + Into<usize>>(&mut self, pixels: &[T], channels: usize, sources: Sources) {
+        let top = self.0[0].len() - 1;
+        for (k, (counts, source)) in self.0.iter_mut().zip(sources).enumerate() {
+            match source {
+                Some(source) => {
+                    for pixel in pixels.chunks_exact(channels) {
+                        counts[pixel[source].into()] += 1;
+                    }
+                }
+                None => {
+                    counts[if k == Channel::Alpha as usize { top } else { 0 }] +=
+                        (pixels.len() / channels) as u64
+                }
+            }
         }
     }
 
@@ -68,23 +125,15 @@ impl Texels {
         let first = values.next().unwrap_or(factor);
         [first, values.last().unwrap_or(first)]
     }
-
-    /// Counts the levels of interleaved pixels, of whose channels these are R, G and B; A is the last of 2 or 4, else 1.
-    fn count<T: Copy + Into<usize>>(pixels: &[T], channels: usize, rgb: [usize; 3]) -> Self {
-        let levels: usize = 1 << (8 * size_of::<T>());
-        let mut counts = std::array::from_fn(|_| vec![0; levels]);
-        for pixel in pixels.chunks_exact(channels) {
-            for (counts, k) in counts.iter_mut().zip(rgb) {
-                counts[pixel[k].into()] += 1;
-            }
-            let alpha = if channels.is_multiple_of(2) { pixel[channels - 1].into() } else { levels - 1 };
-            counts[3][alpha] += 1;
-        }
-        Self(counts)
-    }
 }
 
-const KTX2: &[u8] = b"\xABKTX 20\xBB";
+/// Refuses pictures that are larger than any of a real scene.
+pub fn check_size([width, height]: [u32; 2]) -> Result<(), String> {
+    if width > MAX_SIDE || height > MAX_SIDE {
+        return Err(format!("it has {width} × {height} texels, and {MAX_SIDE} a side are the most"));
+    }
+    Ok(())
+}
 
 /// The value of each level, factor · k / (2ⁿ − 1), and its count.
 fn levels(counts: &[u64], factor: f64) -> impl Iterator<Item = (f64, u64)> {

@@ -10,6 +10,8 @@ use toml::de::{DeTable, DeValue};
 pub struct Document<'a> {
     path: &'a Path,
     text: &'a str,
+    /// Where its lines end.
+    ends: Vec<usize>,
 }
 
 impl<'a> Document<'a> {
@@ -18,7 +20,8 @@ impl<'a> Document<'a> {
             let line = 1 + bytes.iter().take(e.valid_up_to()).filter(|&&b| b == b'\n').count();
             Error::input(format!("{}: line {line}: not UTF-8; save the recipe as UTF-8 text", path.display()))
         })?;
-        Ok(Self { path, text })
+        let ends = text.match_indices('\n').map(|(at, _)| at).collect();
+        Ok(Self { path, text, ends })
     }
 
     pub fn parse(&self) -> Result<Spanned<DeTable<'a>>> {
@@ -34,7 +37,7 @@ impl<'a> Document<'a> {
 
     /// "recipe.toml: line 7"
     fn place(&self, at: usize) -> String {
-        let line = 1 + self.text.bytes().take(at).filter(|&b| b == b'\n').count();
+        let line = 1 + self.ends.partition_point(|&end| end < at);
         format!("{}: line {line}", self.path.display())
     }
 
