@@ -14,10 +14,10 @@ use crate::base::error::Result;
 use crate::base::tolerance::Tolerance;
 use crate::check;
 use crate::check::Check;
+use crate::check::cross_check::is_anisotropic_mean;
 use crate::integrate::rule_set::has_listed_directions;
 use crate::plan::TablePlan;
 use crate::table::axis::{Axis, Mapping, Positions, Variable};
-use crate::table::quantity::Evaluation;
 use crate::table::report::InterpolationError;
 use crate::table::{Values, indices};
 use rayon::prelude::*;
@@ -50,10 +50,8 @@ pub(crate) fn measure(plan: &TablePlan, values: &Values, check: Check) -> Result
     }
     let domain: Vec<_> = plan.axes().iter().map(|axis| promised(axis.variable(), axis.range())).collect();
     let dense = Dense::new(plan, values, test_grid(plan));
-    let (searched, referenced) = match plan.quantity().evaluation {
-        Evaluation::Hemispherical => (SEARCHED / 4, REFERENCED / 4),
-        _ => (SEARCHED, REFERENCED),
-    };
+    let share = if is_anisotropic_mean(plan) { 4 } else { 1 };
+    let (searched, referenced) = (SEARCHED / share, REFERENCED / share);
     let worst = dense.worst(&domain, searched);
     let mut points: Vec<_> = worst.iter().map(|&texel| dense.around(plan, values, &domain, texel)).collect();
     points
@@ -99,8 +97,8 @@ pub(crate) fn measure(plan: &TablePlan, values: &Values, check: Check) -> Result
     }))
 }
 
-/// The number of worst points around which a finer grid is searched; a quarter of means over all directions, and of the
-/// further points, as their reference takes longer.
+/// The number of worst points around which a finer grid is searched; a quarter of them, and of the further points, in
+/// means of anisotropic lobes, whose reference takes longer.
 const SEARCHED: usize = 8;
 /// The number of further points that are compared with the reference. The fast path, which finds the worst points, is
 /// certified by a finer rule of its own.

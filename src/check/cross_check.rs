@@ -2,8 +2,8 @@
 
 use crate::base::angles::delta_phi;
 use crate::base::error::Result;
-use crate::base::tolerance::REFERENCE_SHARE;
 use crate::base::sequence::stride;
+use crate::base::tolerance::REFERENCE_SHARE;
 use crate::check::reference::{ReferenceLobe, reference_of_model};
 use crate::model::lobe::Lobe;
 use crate::plan::TablePlan;
@@ -41,8 +41,15 @@ pub(crate) struct Comparison<'a> {
     tally: ErrorTally,
 }
 
-/// The texels of other tables that a mean over all directions counts for, as its reference integrates over ρ_dh.
+/// The texels of other tables that a mean over all directions of an anisotropic lobe counts for: its reference integrates over
+/// four angles.
 const MEAN_COST: usize = 32;
+
+/// Whether a table has means over all directions of an anisotropic lobe.
+pub(super) fn is_anisotropic_mean(table: &TablePlan) -> bool {
+    let is_mean = table.quantity().evaluation == Evaluation::Hemispherical;
+    is_mean && table.lobes().iter().any(|lobe| lobe.model().is_anisotropic())
+}
 
 impl<'a> Comparison<'a> {
     pub fn new(table: &'a TablePlan, check: Check, estimate: Option<f64>) -> Self {
@@ -50,7 +57,7 @@ impl<'a> Comparison<'a> {
         let sample = match check {
             _ if !known => Some(Vec::new()),
             Check::All => None,
-            Check::Sample(n) if table.quantity().evaluation == Evaluation::Hemispherical => {
+            Check::Sample(n) if is_anisotropic_mean(table) => {
                 Some(sample(&table.shape(), n.div_ceil(MEAN_COST)))
             }
             Check::Sample(n) => Some(sample(&table.shape(), n)),
@@ -184,7 +191,9 @@ fn reference_components(
     error: f64,
 ) -> [f64; 2] {
     let get = |variable| coordinates.get(&variable).copied();
-    let Some(reference) = ReferenceLobe::within(lobe, get(Variable::Roughness), error) else { return [f64::NAN; 2] };
+    let Some(reference) = ReferenceLobe::within(lobe, get(Variable::Roughness), error) else {
+        return [f64::NAN; 2];
+    };
     let theta_i = get(Variable::ThetaI).unwrap_or(0.0);
     let phi_i = get(Variable::PhiI).unwrap_or(0.0);
     match quantity.evaluation {

@@ -120,7 +120,8 @@ impl ReferenceCurve {
         let measure = setting.alpha().to_bits();
         let key = (albedo.model.name, measure, error.to_bits(), albedo.parameters.map(f64::to_bits));
         // One more than the decay asks for: the coefficients begin at 1 and more.
-        let points = ((-error.max(f64::MIN_POSITIVE).ln() / ELLIPSE.ln()).ceil() as usize + 2).min(MOST_POINTS);
+        let points =
+            ((-error.max(f64::MIN_POSITIVE).ln() / ELLIPSE.ln()).ceil() as usize + 2).min(MOST_POINTS);
         let mut curves = CURVES.lock().unwrap_or_else(PoisonError::into_inner);
         if curves.len() >= CURVES_KEPT {
             curves.clear();

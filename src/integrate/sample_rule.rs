@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 pub(crate) enum Sampler {
     /// The distribution of normals, by Hammersley's points.
     Ndf,
-    /// The visible normals, by Hammersley's points.
+    /// The visible normals, by Hammersley's points, centred.
     Vndf,
     /// The visible normals, at random.
     Random,
@@ -40,7 +40,7 @@ impl SampleRule {
         let draws = match sampler {
             Sampler::Random => Vec::new(),
             Sampler::Ndf => hammersley(samples).map(|[u, v]| [(u / (1.0 - u)).sqrt(), v]).collect(),
-            Sampler::Vndf => hammersley(samples).collect(),
+            Sampler::Vndf => centred(samples).collect(),
         };
         let mirror_limit = slopes.mirror_limit;
         Self { sampler, sampling, mirror_limit, mus, chunk, chunks: samples / chunk, draws }
@@ -64,9 +64,18 @@ impl SampleRule {
     }
 }
 
-/// Hammersley's n points (u, cos φ). Half a turn is enough for lobes that are symmetric in φ, and the points are centred
-/// in their cells: both favour the samplers.
+/// Hammersley's n points (u, cos φ) as Karis 2013 and Filament's `cmgen` take them: φ = 2π k/n, and u the radical inverse
+/// of k, from 0.
 fn hammersley(n: usize) -> impl Iterator<Item = [f64; 2]> {
+    (0..n as u32).map(move |k| {
+        let reversed = f64::from(k.reverse_bits()) / 2f64.powi(32);
+        [reversed, (2.0 * PI * f64::from(k) / n as f64).cos()]
+    })
+}
+
+/// The same points centred in their cells, with φ over half a turn: enough for lobes that are symmetric in φ. Both favour the
+/// sampler, which has no direction at u = 0.
+fn centred(n: usize) -> impl Iterator<Item = [f64; 2]> {
     let half = 0.5 / n as f64;
     (0..n as u32).map(move |k| {
         let reversed = f64::from(k.reverse_bits()) / 2f64.powi(32);

@@ -19,6 +19,7 @@ const TERM: Term = Term {
 /// The mirror with the default, all of it reflected.
 pub(crate) static MODEL: Model = Model {
     summary: "the ideal mirror, a delta: no values, integrals in closed form; Schlick's Fresnel",
+    source: "f = F δ(θi − θe) δ(φi + π − φe) / (cos θi sin θi); Schlick 1994, eq. 15",
     components: &Component::schlick(1.0),
     ..Made::<Schlick>::MODEL
 };

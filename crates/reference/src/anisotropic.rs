@@ -129,7 +129,8 @@ impl Anisotropic {
         let widths = successors(Some(width), |width| Some(GRADE * width)).take_while(|&w| w < 1.0);
         let widths: Vec<_> = widths.collect();
         let half = |edge: f64| {
-            let offsets = widths.iter().flat_map(|&width| [-width, width]).chain([-FRAC_PI_2, 0.0, FRAC_PI_2]);
+            let offsets =
+                widths.iter().flat_map(|&width| [-width, width]).chain([-FRAC_PI_2, 0.0, FRAC_PI_2]);
             let mut breaks: Vec<_> = offsets.map(|offset| edge + offset).collect();
             breaks.sort_by(f64::total_cmp);
             let slice = |chi: f64| self.slice(FINER * tolerance, mu, [cos_phi, sin_phi], chi, setting);

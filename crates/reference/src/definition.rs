@@ -23,12 +23,7 @@ pub(super) fn rho_dh_kinked(f: impl Fn(&Angles) -> [f64; 2], mu: f64, setting: &
     rho_dh_between(&[0.0, FRAC_PI_2, PI], f, mu, setting)
 }
 
-fn rho_dh_between(
-    azimuths: &[f64],
-    f: impl Fn(&Angles) -> [f64; 2],
-    mu: f64,
-    setting: &Setting,
-) -> [f64; 2] {
+fn rho_dh_between(azimuths: &[f64], f: impl Fn(&Angles) -> [f64; 2], mu: f64, setting: &Setting) -> [f64; 2] {
     let tolerance = setting.tolerance(FINEST);
     let theta_i = mu.clamp(MIN_MU, 1.0).acos();
     let ring = |theta_e: f64| {

@@ -113,8 +113,10 @@ struct References<'a> {
 impl<'a> References<'a> {
     /// `None` where one has no reference.
     fn new(lobes: &'a [Lobe]) -> Option<Self> {
-        let all: Vec<_> =
-            lobes.iter().map(|lobe| Some((lobe, ReferenceLobe::exact(lobe, None)?))).collect::<Option<_>>()?;
+        let all: Vec<_> = lobes
+            .iter()
+            .map(|lobe| Some((lobe, ReferenceLobe::exact(lobe, None)?)))
+            .collect::<Option<_>>()?;
         let (deltas, values): (Vec<_>, Vec<_>) = all.into_iter().partition(|(lobe, _)| is_delta(lobe));
         let width = values.iter().filter_map(|(_, lobe)| lobe.width()).fold(1.0, f64::min);
         Some(Self { deltas, values, width })

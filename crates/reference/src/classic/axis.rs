@@ -86,9 +86,8 @@ impl Reference for AboutAxis {
         far.reverse();
         let breaks: Vec<_> = [0.0].into_iter().chain(near).chain(far).chain([1.0]).collect();
         let tolerance = s.tolerance(10.0 * FINEST);
-        let weighted = |w: f64| {
-            self.rho(w * w, s, 0.1 * tolerance / (w * w), &|_| 1.0).map(|rho| 4.0 * w.powi(3) * rho)
-        };
+        let weighted =
+            |w: f64| self.rho(w * w, s, 0.1 * tolerance / (w * w), &|_| 1.0).map(|rho| 4.0 * w.powi(3) * rho);
         integrate(weighted, &breaks, tolerance).value_or_nan()
     }
 
