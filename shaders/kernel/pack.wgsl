@@ -25,8 +25,8 @@ fn value(texel: u32, c: u32) -> f32 {
 }
 
 @compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3u) {
-    let texel = id.x;
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let texel = id.y * groups.x * 64u + id.x;
     if texel >= packing.texels {
         return;
     }

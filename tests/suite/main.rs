@@ -36,6 +36,7 @@ mod plot;
 mod portable;
 mod promises;
 mod radiometry;
+mod restricted;
 #[cfg(feature = "scene")]
 mod scenes;
 #[cfg(feature = "cli")]

@@ -94,6 +94,7 @@ const WORKGROUP: usize = 64;
 const POINTS_PER_DISPATCH: usize = 1 << 18;
 /// The largest number of rows of a dispatch of values: 32 a workgroup, and at most 65,535 workgroups.
 const ROWS_PER_DISPATCH: usize = 1 << 20;
+const ROWS_PER_WORKGROUP: usize = 4 * 8;
 
 impl ResultLayout {
     pub fn new(table: &TablePlan, precision: Precision) -> Self {
@@ -145,11 +146,13 @@ impl ResultLayout {
     }
 
     /// The tiles of a table, as ranges of units, by size alone: results must not depend on speed.
-    pub fn tiles(&self, dispatches: &[Dispatches]) -> Vec<Range<usize>> {
+    pub fn tiles(&self, dispatches: &[Dispatches], limits: &wgpu::Limits) -> Vec<Range<usize>> {
         let raw_bytes = |lobe: &Dispatches| lobe.raw_bytes_per_unit().max(lobe.uploaded_bytes_per_unit());
         let raw = dispatches.iter().map(raw_bytes).max().unwrap_or(0);
         // A tile has whole groups of the α that an invocation takes together.
-        let per_tile = (TILE_BYTES / raw.max(self.bytes(1)) / TILE_ALPHAS * TILE_ALPHAS).max(TILE_ALPHAS);
+        let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        let bytes = TILE_BYTES.min(usize::try_from(most).unwrap_or(TILE_BYTES));
+        let per_tile = (bytes / raw.max(self.bytes(1)) / TILE_ALPHAS * TILE_ALPHAS).max(TILE_ALPHAS);
         (0..self.units).step_by(per_tile).map(|first| first..(first + per_tile).min(self.units)).collect()
     }
 }
@@ -176,12 +179,39 @@ impl Baker {
         Ok(prepared.recorded)
     }
 
+    /// Calls `use_device`, and returns an error of the device that it caused as [`Error::Device`]. The owner's error handlers
+    /// stay as they are, and hear nothing of it.
+    pub(crate) fn scoped<T>(&self, use_device: impl FnOnce() -> Result<T>) -> Result<T> {
+        let filters =
+            [wgpu::ErrorFilter::Validation, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Internal];
+        let scopes = filters.map(|filter| self.device.push_error_scope(filter));
+        let result = use_device();
+        let mut fault = None;
+        // The last one first, as they are nested.
+        for scope in scopes.into_iter().rev() {
+            fault = pollster::block_on(scope.pop()).or(fault);
+        }
+        match fault {
+            Some(fault) => Err(Error::Device(format!("{}: {fault}", self.device.adapter_info().name))),
+            None => result,
+        }
+    }
+
+    /// The most workgroups that the device dispatches along a dimension.
+    pub(crate) fn max_workgroups(&self) -> usize {
+        self.device.limits().max_compute_workgroups_per_dimension.max(1) as usize
+    }
+
     /// Makes the buffers and pipelines of [`record`](Self::record) once, for callers that bake the same table again and
     /// again into the same buffer.
     ///
     /// # Errors
     /// When the table does not fit one binding of the device, or takes loops that not every driver runs.
     pub fn prepare(&self, table: &TablePlan) -> Result<Prepared> {
+        self.scoped(|| self.prepare_unguarded(table))
+    }
+
+    fn prepare_unguarded(&self, table: &TablePlan) -> Result<Prepared> {
         let layout = ResultLayout::new(table, Precision::F32);
         let dispatches = self.dispatches(table, Precision::F32, || Ok(SAFE_TURNS))?;
         let raw = dispatches.iter().map(Dispatches::raw_bytes_per_unit).max().unwrap_or(0) * layout.units;
@@ -306,6 +336,7 @@ impl Baker {
             Some(_) => (POINTS_PER_DISPATCH / stage.cost).max(1),
             None => (EVALUATIONS_PER_DISPATCH / stage.cost).clamp(WORKGROUP, INVOCATIONS_PER_DISPATCH),
         };
+        let per_step = per_step.min(self.max_workgroups() * WORKGROUP);
         for first in range.clone().step_by(per_step) {
             let end = (first + per_step).min(range.end);
             let job = KernelJob { first: count(first)?, end: count(end)?, ..job };
@@ -343,6 +374,7 @@ impl Baker {
         let row_data = groups.concat();
         let rows = self.init(bytemuck::cast_slice(&row_data), wgpu::BufferUsages::STORAGE);
         let windows = stage.per_unit.div_ceil(VALUE_WINDOW);
+        let most_rows = ROWS_PER_DISPATCH.min(self.max_workgroups() * ROWS_PER_WORKGROUP);
         let mut end = 0;
         for (phi_i, group) in groups.iter().enumerate() {
             let first = end;
@@ -354,7 +386,7 @@ impl Baker {
                 let size = std::num::NonZeroU64::new(BYTES);
                 let binding = wgpu::BufferBinding { buffer: quads, offset, size };
                 let rows_per_step =
-                    (EVALUATIONS_PER_DISPATCH / (columns * stage.cost)).clamp(1, ROWS_PER_DISPATCH);
+                    (EVALUATIONS_PER_DISPATCH / (columns * stage.cost)).clamp(1, most_rows);
                 for row in (first..end).step_by(rows_per_step) {
                     let rows_here = rows_per_step.min(end - row);
                     let job = KernelJob {
@@ -375,7 +407,7 @@ impl Baker {
                     steps.push(DispatchStep {
                         pipeline: pipeline.clone(),
                         bind_group: self.bind(pipeline, resources),
-                        workgroups: [1, count(rows_here.div_ceil(4 * 8))?],
+                        workgroups: [1, count(rows_here.div_ceil(ROWS_PER_WORKGROUP))?],
                         evaluations: (columns * rows_here * stage.cost) as u64,
                     });
                 }

@@ -52,7 +52,7 @@ impl Device {
         let prepare = || -> Result<(ResultLayout, Vec<Tile>)> {
             let layout = ResultLayout::new(table, precision);
             let dispatches = self.baker.dispatches(table, precision, || self.known_turns())?;
-            let tiles = layout.tiles(&dispatches).into_iter();
+            let tiles = layout.tiles(&dispatches, &self.baker.device.limits()).into_iter();
             let tiles =
                 tiles.map(|units| self.baker.tile(&layout, &dispatches, units)).collect::<Result<_>>()?;
             Ok((layout, tiles))

@@ -161,19 +161,7 @@ impl Device {
             self.fault()?;
             return Ok(result);
         }
-        let filters =
-            [wgpu::ErrorFilter::Validation, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Internal];
-        let scopes = filters.map(|filter| self.baker.device.push_error_scope(filter));
-        let result = use_device();
-        let mut fault = None;
-        // The last one first, as they are nested.
-        for scope in scopes.into_iter().rev() {
-            fault = pollster::block_on(scope.pop()).or(fault);
-        }
-        match fault {
-            Some(fault) => Err(Error::Device(format!("{}: {fault}", self.name()))),
-            None => result,
-        }
+        self.baker.scoped(use_device)
     }
 
     /// The device that a choice means; `None` for the CPU path, with the reason in a line.

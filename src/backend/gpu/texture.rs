@@ -1,6 +1,6 @@
 //! Bakes a table into a texture, without leaving the device.
 
-use crate::backend::gpu::baker::{Baker, Recorded};
+use crate::backend::gpu::baker::{Baker, DispatchStep, Recorded};
 use crate::base::error::{Error, Result};
 use crate::base::precision::Precision;
 use crate::plan::TablePlan;
@@ -77,22 +77,27 @@ impl Baker {
                 table.quantity().name
             ));
         }
-        let recorded = self.record(encoder, table)?;
-        let size = [recorded.width, recorded.height].map(|n| u32::try_from(n).unwrap_or(u32::MAX));
+        let width = table.axes().last().map_or(1, |axis| axis.len());
+        let size = [width, table.texels() / width].map(|n| u32::try_from(n).unwrap_or(u32::MAX));
         let limit = self.device.limits().max_texture_dimension_2d;
         if size[0].max(size[1]) > limit {
             return refuse(format!("{} × {} texels; the device's textures end at {limit}", size[0], size[1]));
         }
-        self.copy(encoder, &recorded, size, format)
+        let prepared = self.prepare(table)?;
+        // Nothing is recorded before all buffers and pipelines are there.
+        let texture = self.scoped(|| self.texture(&prepared.recorded, size, format))?;
+        prepared.encode(encoder);
+        texture.encode(encoder);
+        Ok(texture.texture)
     }
 
-    fn copy(
+    /// Makes the texture of a recorded table, and what copies it there.
+    fn texture(
         &self,
-        encoder: &mut wgpu::CommandEncoder,
         recorded: &Recorded,
         [width, height]: [u32; 2],
         format: TextureFormat,
-    ) -> Result<wgpu::Texture> {
+    ) -> Result<PackedTexture> {
         let words = format.channels() as u32 / if format.is_half() { 2 } else { 1 };
         let pitch = (width * words * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let packing = Packing {
@@ -110,12 +115,11 @@ impl Baker {
         let pipeline = self.pipeline(Kernel::Pack, None, 0, Precision::F32)?;
         let buffers = [&packing, &recorded.buffer, &texels];
         let bind_group = self.bind(&pipeline, buffers.map(wgpu::Buffer::as_entire_binding));
-        let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &bind_group, &[]);
-        pass.dispatch_workgroups((width * height).div_ceil(64), 1, 1);
-        drop(pass);
-
+        // More workgroups than a dimension takes stand in rows.
+        let all = (width * height).div_ceil(64);
+        let across = all.min(self.device.limits().max_compute_workgroups_per_dimension).max(1);
+        let step =
+            DispatchStep { pipeline, bind_group, workgroups: [across, all.div_ceil(across)], evaluations: 0 };
         let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
         let texture = self.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("gonio table"),
@@ -129,13 +133,29 @@ impl Baker {
                 | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
+        Ok(PackedTexture { step, texels, pitch, texture })
+    }
+}
+
+/// A texture, and the dispatch and the copy that fill it.
+struct PackedTexture {
+    step: DispatchStep,
+    /// The rows of texels as a copy wants them.
+    texels: wgpu::Buffer,
+    /// The bytes from one row to the next.
+    pitch: u32,
+    texture: wgpu::Texture,
+}
+
+impl PackedTexture {
+    fn encode(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.step.encode(encoder);
         let layout =
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(pitch), rows_per_image: None };
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(self.pitch), rows_per_image: None };
         encoder.copy_buffer_to_texture(
-            wgpu::TexelCopyBufferInfo { buffer: &texels, layout },
-            texture.as_image_copy(),
-            size,
+            wgpu::TexelCopyBufferInfo { buffer: &self.texels, layout },
+            self.texture.as_image_copy(),
+            self.texture.size(),
         );
-        Ok(texture)
     }
 }

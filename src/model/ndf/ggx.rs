@@ -34,7 +34,7 @@ impl Ndf for Ggx {
     /// α = ±i t_max, at μ = ±2iα/(1 − α²). Measured by `print_the_error_of_interpolation` (`src/integrate/chebyshev.rs`): 1 is too little by a third.
     const RULE: Option<Rule> = Some(Rule {
         kernels: Some([ggx_coarse::PART, ggx_fine::PART]),
-        branches: Some(Branches { strength: 1.5 }),
+        branches: Some(Branches { strength: 24.0 }),
         ..Rule::new(|mu, s, tolerance| ggx_nodes::counts(mu, s.alpha, tolerance))
     });
     const DRAWS: Option<Draws> = Some(ggx_samples::DRAWS);
