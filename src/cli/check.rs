@@ -9,6 +9,7 @@ use crate::base::error::{Error, Result};
 use crate::base::timings::Stopwatch;
 use crate::cli::watch::Watch;
 use crate::cli::{HEADING, device_json, junit, print_beside, print_json, warn};
+use crate::io::Outputs;
 use crate::scene;
 use crate::verify;
 use crate::verify::user_shader::{UserFunction, UserShader, directions};
@@ -121,6 +122,10 @@ fn check_targets(args: &Args, targets: Vec<CheckTarget>, evaluator: &Evaluator, 
     print_beside(args.json, &format!("{HEADING}device{HEADING:#}  {line}"))?;
     let watch = Watch::new(STEPS * targets.len());
     let mut all = Vec::new();
+    let mut outputs = Outputs::default();
+    if let Some(dir) = &args.out {
+        outputs.folder(dir)?;
+    }
     for (k, CheckTarget { mut subject, command }) in targets.into_iter().enumerate() {
         let start = Stopwatch::start();
         let report = verify::check(&mut subject, &args.options(), &watch)?;
@@ -132,7 +137,7 @@ fn check_targets(args: &Args, targets: Vec<CheckTarget>, evaluator: &Evaluator, 
         if let Some(dir) = &args.out {
             let plain = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
             let stem = format!("{k}_{}", report.subject.chars().map(plain).collect::<String>());
-            for path in pictures::write(dir, &stem, &mut subject, &report)? {
+            for path in pictures::write(dir, &stem, &mut subject, &report, &mut outputs)? {
                 watch.hide(|| print_beside(args.json, &format!("{:15}{}", "", path.display())))?;
             }
         }
@@ -140,8 +145,9 @@ fn check_targets(args: &Args, targets: Vec<CheckTarget>, evaluator: &Evaluator, 
     }
     watch.finish();
     if let Some(path) = &args.junit {
-        junit::write(path, &all)?;
+        junit::write(path, &all, &mut outputs)?;
     }
+    outputs.commit()?;
     if args.json {
         let subjects = all.iter().map(|checked| {
             let findings = checked.report.findings.iter().zip(&checked.inputs).map(|(finding, eval)| {
@@ -205,7 +211,9 @@ fn check_shader(args: &Args, path: &Path, entry: &str) -> Result<()> {
     let inputs = report.findings.iter().map(|f| f.input.as_ref().map(Input::to_string)).collect();
     let checked = [Checked { report, seconds, inputs }];
     if let Some(path) = &args.junit {
-        junit::write(path, &checked)?;
+        let mut outputs = Outputs::default();
+        junit::write(path, &checked, &mut outputs)?;
+        outputs.commit()?;
     }
     let report = &checked[0].report;
     if args.json {
@@ -226,7 +234,8 @@ fn check_shader(args: &Args, path: &Path, entry: &str) -> Result<()> {
         print_json(&json!({
             "subject": report.subject,
             "device": { "kind": device.kind(), "name": device.name(), "driver": device.driver() },
-            "evaluated": report.evaluated, "seconds": seconds, "kept": report.is_kept(), "findings": findings,
+            "evaluated": report.evaluated, "seconds": seconds, "kept": report.is_kept(), "notes": report.notes,
+            "findings": findings,
         }))?;
     }
     verdict(&checked)

@@ -164,7 +164,7 @@ fn write(
 ) -> Result<Value> {
     let (mut files, mut pictures) = (Map::new(), Vec::new());
     let mut add = |name: String, bytes: &[u8]| -> Result<()> {
-        let sha256 = set.add(&name, bytes)?;
+        let (name, sha256) = set.add(&name, bytes)?;
         files.insert(name, sha256.into());
         Ok(())
     };

@@ -4,18 +4,16 @@
 
 use crate::base::error::{Error, Result};
 use crate::cli::check::Checked;
+use crate::io::Outputs;
 use crate::verify::{Finding, Verdict};
 use quick_xml::Writer;
 use quick_xml::events::BytesText;
 use std::io;
 use std::path::Path;
 
-/// Writes the reports, replacing the file only when all of them are written.
-pub fn write(path: &Path, all: &[Checked]) -> Result<()> {
-    let text = xml(all).map_err(|e| Error::Internal(format!("JUnit: {e}")))?;
-    let partial = path.with_added_extension("partial");
-    std::fs::write(&partial, text).map_err(Error::io("write", path))?;
-    std::fs::rename(&partial, path).map_err(Error::io("write", path))
+/// Stages the reports.
+pub fn write(path: &Path, all: &[Checked], outputs: &mut Outputs) -> Result<()> {
+    outputs.add(path, xml(all).map_err(|e| Error::Internal(format!("JUnit: {e}")))?)
 }
 
 /// Counts tests, failures and seconds, for the attributes of one suite or of all.

@@ -10,7 +10,7 @@ use crate::cli::watch::Watch;
 use crate::cli::{HEADING, device_json, models as details, print_beside, print_json};
 use crate::figure::picture::{MOST_SETTINGS, MOST_THETAS, Picture, Plate, Radius, draw};
 use crate::figure::{Figure, FigureSubject};
-use crate::io::write_files;
+use crate::io::Outputs;
 use crate::model;
 use crate::scene;
 use serde_json::{Value, json};
@@ -110,11 +110,11 @@ pub fn run(args: &Args) -> Result<()> {
     let shown = view.show(&args.theta, args.radius, &evaluator, &watch);
     watch.finish();
     let shown = shown?;
-    let mut files = Vec::new();
+    let mut outputs = Outputs::default();
     for (path, format) in out.iter().zip(formats) {
-        files.push((path.clone(), format.encode(&shown.picture)?));
+        outputs.add(path, format.encode(&shown.picture)?)?;
     }
-    write_files(&files)?;
+    outputs.commit()?;
     for line in shown.lines() {
         say(&line)?;
     }
