@@ -7,14 +7,14 @@ use crate::backend::gpu::{Device, DeviceChoice, INSTALL};
 use crate::bake::Evaluator;
 use crate::base::error::{Error, Result};
 use crate::base::timings::Stopwatch;
+use crate::cli::print::{ERROR, GOOD, WARNING};
 use crate::cli::watch::Watch;
-use crate::cli::{HEADING, device_json, junit, print_beside, print_json, warn};
+use crate::cli::{HEADING, device_json, junit, open, print_beside, print_json, warn};
 use crate::io::Outputs;
 use crate::scene;
 use crate::verify;
 use crate::verify::user_shader::{UserFunction, UserShader, directions};
 use crate::verify::{Finding, Input, Options, Parameter, Report, STEPS, Symmetry, Verdict};
-use anstyle::{AnsiColor, Style};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use targets::CheckTarget;
@@ -84,11 +84,6 @@ If a format is known to break a promise, gonio reports it and checks the known b
 Exit codes: 0 all promises hold (or break within their known bound), 1 a promise is broken, 2 bad input,
 3 no device, 130 interrupted";
 
-/// Bold green, and bold red.
-const KEPT: Style = AnsiColor::Green.on_default().bold();
-const BROKEN: Style = AnsiColor::Red.on_default().bold();
-const DECLARED: Style = AnsiColor::Yellow.on_default().bold();
-
 /// Parses a count, also as 1e8.
 fn budget(text: &str) -> Result<u64, String> {
     let value: f64 = text.parse().map_err(|_| format!("\"{text}\" is not a number"))?;
@@ -103,14 +98,14 @@ pub fn run(args: &Args) -> Result<()> {
     match (&args.scene, &args.model, &args.wgsl, &args.entry) {
         (Some(path), ..) => {
             let scene = scene::read(path)?;
-            let (evaluator, line) = Evaluator::choose(&args.device)?;
+            let (evaluator, line) = open(&args.device)?;
             scene.warnings.iter().for_each(|warning| warn(warning));
-            let targets = targets::scene(path, &scene, args.material.as_deref(), &evaluator)?;
-            check_targets(args, targets, &evaluator, &line)
+            let targets = targets::scene(path, &scene, args.material.as_deref(), evaluator)?;
+            check_targets(args, targets, evaluator, &line)
         }
         (_, Some(model), ..) => {
-            let (evaluator, line) = Evaluator::choose(&args.device)?;
-            check_targets(args, vec![targets::model(args, model, &evaluator)?], &evaluator, &line)
+            let (evaluator, line) = open(&args.device)?;
+            check_targets(args, vec![targets::model(args, model, evaluator)?], evaluator, &line)
         }
         (_, _, Some(path), Some(entry)) => check_shader(args, path, entry),
         _ => Err(Error::input("give a SCENE, --model NAME, or --wgsl FILE and --entry NAME")),
@@ -190,8 +185,10 @@ fn check_shader(args: &Args, path: &Path, entry: &str) -> Result<()> {
             "WGSL needs a Vulkan device, and there is no CPU path for it ({line}). {INSTALL}"
         ))
     })?;
+    // It lives as long as the process, see `open`.
+    let device: &'static Device = Box::leak(Box::new(device));
     let symmetry = Symmetry { isotropic: !args.anisotropic, bilateral: !args.anisotropic };
-    let mut subject = UserShader::new(&device, function, parameters, args.cosine, symmetry)?;
+    let mut subject = UserShader::new(device, function, parameters, args.cosine, symmetry)?;
 
     let start = Stopwatch::start();
     let watch = Watch::new(STEPS);
@@ -312,9 +309,9 @@ fn parameters(function: &UserFunction, sets: &[String]) -> Result<Vec<Parameter>
 /// Formats one finding as a line.
 fn show(finding: &Finding) -> String {
     let (style, word) = match finding.verdict {
-        Verdict::Kept => (KEPT, "kept    "),
-        Verdict::Declared => (DECLARED, "declared"),
-        Verdict::Broken => (BROKEN, "BROKEN  "),
+        Verdict::Kept => (GOOD, "kept    "),
+        Verdict::Declared => (WARNING, "declared"),
+        Verdict::Broken => (ERROR, "BROKEN  "),
     };
     let note = finding.note.as_ref().map_or(String::new(), |note| format!("; {note}"));
     format!("{:13}  {style}{word}{style:#}  {}{note}", finding.property, finding.said)

@@ -3,6 +3,7 @@
 //! There is no standard; this is what Jenkins, GitLab and GitHub's actions read alike.
 
 use crate::base::error::{Error, Result};
+use crate::base::words::printable;
 use crate::cli::check::Checked;
 use crate::io::Outputs;
 use crate::verify::{Finding, Verdict};
@@ -49,12 +50,17 @@ fn xml(all: &[Checked]) -> io::Result<Vec<u8>> {
 /// Writes the test suite of a subject.
 fn suite(writer: &mut Writer<Vec<u8>>, checked: &Checked) -> io::Result<()> {
     let report = &checked.report;
-    let suite = writer.create_element("testsuite").with_attribute(("name", report.subject.as_str()));
+    let name = printable(&report.subject);
+    let suite = writer.create_element("testsuite").with_attribute(("name", name.as_ref()));
     let sums = totals(std::iter::once(checked));
     let suite = sums.iter().fold(suite, |e, (key, value)| e.with_attribute((*key, value.as_str())));
     suite.write_inner_content(|writer| {
         for (finding, input) in report.findings.iter().zip(&checked.inputs) {
-            case(writer, &report.subject, finding, input.as_deref())?;
+            case(writer, &name, finding, input.as_deref())?;
+        }
+        if !report.notes.is_empty() {
+            let notes = report.notes.join("\n");
+            writer.create_element("system-out").write_text_content(BytesText::new(&printable(&notes)))?;
         }
         Ok(())
     })?;
@@ -76,13 +82,14 @@ fn case(
     if let Some(input) = input {
         details += &format!("\nworst input: {input}");
     }
+    let [said, details] = [&said, &details].map(|text| printable(text));
     let case = [("classname", subject), ("name", finding.property)];
     let case = writer.create_element("testcase").with_attributes(case);
     case.write_inner_content(|writer| {
         match finding.verdict {
             Verdict::Broken => writer
                 .create_element("failure")
-                .with_attributes([("type", finding.property), ("message", said.as_str())])
+                .with_attributes([("type", finding.property), ("message", said.as_ref())])
                 .write_text_content(BytesText::new(&details))?,
             _ => writer.create_element("system-out").write_text_content(BytesText::new(&details))?,
         };

@@ -7,7 +7,7 @@ use crate::cli::check::quoted;
 use crate::cli::subject;
 use crate::cli::subject::key_value;
 use crate::cli::watch::Watch;
-use crate::cli::{HEADING, device_json, models as details, print_beside, print_json};
+use crate::cli::{HEADING, device_json, models as details, open, print_beside, print_json};
 use crate::figure::picture::{MOST_SETTINGS, MOST_THETAS, Picture, Plate, Radius, draw};
 use crate::figure::{Figure, FigureSubject};
 use crate::io::Outputs;
@@ -103,11 +103,11 @@ pub fn run(args: &Args) -> Result<()> {
     };
     let formats = out.iter().map(|path| PictureFormat::of(path)).collect::<Result<Vec<_>>>()?;
 
-    let (evaluator, line) = Evaluator::choose(&args.device)?;
+    let (evaluator, line) = open(&args.device)?;
     let say = |text: &str| print_beside(args.json, text);
     say(&format!("{HEADING}device{HEADING:#}  {line}"))?;
     let watch = Watch::new(view.subjects.len() + 1);
-    let shown = view.show(&args.theta, args.radius, &evaluator, &watch);
+    let shown = view.show(&args.theta, args.radius, evaluator, &watch);
     watch.finish();
     let shown = shown?;
     let mut outputs = Outputs::default();
@@ -123,7 +123,7 @@ pub fn run(args: &Args) -> Result<()> {
         return Ok(());
     }
     let mut json = shown.to_json();
-    json["device"] = device_json(&evaluator);
+    json["device"] = device_json(evaluator);
     json["files"] = json!(out);
     print_json(&json)
 }

@@ -48,6 +48,12 @@ pub(super) fn listed(manifest: &Value) -> Vec<Listed> {
     plain.map(|(name, sha256)| Listed { name: name.into(), sha256: sha256.into() }).collect()
 }
 
+/// The number of files that a manifest lists.
+#[cfg(feature = "cli")]
+pub(crate) fn listed_files(manifest: &Value) -> usize {
+    entries(manifest).count()
+}
+
 /// Reads a manifest; `None` where there is no such file.
 ///
 /// # Errors
@@ -56,7 +62,7 @@ pub(super) fn read(path: &Path) -> Result<Option<Value>> {
     let bytes = match disk::read(path) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(Error::io("read", path)(error)),
+        Err(error) => return Err(disk::explain("read", path)(error)),
     };
     let foreign = |why: &str| {
         let path = path.display();

@@ -22,6 +22,8 @@ pub use format::Format;
 #[cfg(feature = "cli")]
 pub(crate) use list::List;
 pub(crate) use manifest::hash;
+#[cfg(feature = "cli")]
+pub(crate) use manifest::listed_files;
 pub use manifest::{read_manifest, sha256};
 pub(crate) use outputs::{Outputs, write_together};
 #[cfg(feature = "cli")]

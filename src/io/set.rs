@@ -1,5 +1,8 @@
 //! A set of tables and its manifest, written all or nothing.
 
+#[cfg(test)]
+mod faults;
+
 use crate::base::error::{Error, Result};
 use crate::io::disk;
 use crate::io::disk::explain;
