@@ -89,7 +89,8 @@ impl List {
             self.file.write_all(&head)
         };
         finish().map_err(Error::io("write", &self.path))?;
-        let output = self.file.into_inner().map_err(|error| Error::io("write", &self.path)(error.into_error()))?;
+        let output =
+            self.file.into_inner().map_err(|error| Error::io("write", &self.path)(error.into_error()))?;
         let mut outputs = Outputs::default();
         outputs.take(output)?;
         outputs.commit()

@@ -1,8 +1,8 @@
 //! The manifest as a file: reading it with suspicion, writing it to be read by people.
 
 use crate::base::error::{Error, Result};
-use crate::io::format::FORMATS;
 use crate::io::disk;
+use crate::io::format::FORMATS;
 use serde::Serialize;
 use serde_json::Value;
 use serde_json::ser::{Formatter, PrettyFormatter, Serializer};

@@ -46,7 +46,8 @@ impl Outputs {
         if dir.is_dir() {
             return Ok(());
         }
-        let (temporary, ()) = Temporary::made(dir, || fs::create_dir_all(dir).map_err(explain("create the folder", dir)))?;
+        let (temporary, ()) =
+            Temporary::made(dir, || fs::create_dir_all(dir).map_err(explain("create the folder", dir)))?;
         self.temporaries.push(temporary);
         self.folders.push(dir.to_owned());
         Ok(())
@@ -80,7 +81,11 @@ impl Outputs {
         locks.iter().for_each(|folder| drop(folder.lock()));
         let mut replaced = Vec::new();
         for Staged { to, from, is_stream } in std::mem::take(&mut self.staged) {
-            let put = if is_stream { pour(&from, &to) } else { replace(from, &to).map(|old| replaced.push((to.clone(), old))) };
+            let put = if is_stream {
+                pour(&from, &to)
+            } else {
+                replace(from, &to).map(|old| replaced.push((to.clone(), old)))
+            };
             if let Err(error) = put {
                 replaced.into_iter().rev().for_each(|(to, old)| old.restore(&to));
                 return Err(explain("write", &to)(error));
@@ -114,7 +119,10 @@ impl Output {
                 (if path.is_symlink() { to } else { path.to_owned() }, Some(old))
             }
             Err(_) if path.is_symlink() => {
-                return Err(Error::input(format!("{}: a link that leads to no file; give the file", path.display())));
+                return Err(Error::input(format!(
+                    "{}: a link that leads to no file; give the file",
+                    path.display()
+                )));
             }
             Err(error) if error.kind() == ErrorKind::NotFound => (path.to_owned(), None),
             Err(error) => return Err(explain("write", path)(error)),
@@ -140,7 +148,6 @@ impl Output {
         }
         Ok(Self { to, file, temporary, is_stream })
     }
-
 }
 
 impl Write for Output {
@@ -178,7 +185,10 @@ enum Old {
 /// Gives a file its name. Returns what had it before.
 fn replace(from: TempPath, to: &Path) -> io::Result<Old> {
     let folder = folder_of(to.parent().unwrap_or(Path::new("")));
-    let second_name = tempfile::Builder::new().prefix(".old.").suffix(".partial").make_in(folder, |name| fs::hard_link(to, name));
+    let second_name = tempfile::Builder::new()
+        .prefix(".old.")
+        .suffix(".partial")
+        .make_in(folder, |name| fs::hard_link(to, name));
     let old = match second_name {
         Ok(old) => Old::File(old.into_temp_path()),
         Err(error) if error.kind() == ErrorKind::NotFound => Old::Nothing,

@@ -113,7 +113,8 @@ impl TableSet {
         let old = Vec::new();
         let (made_files, committed) = (false, false);
         let dir = dir.to_owned();
-        let mut set = Self { dir, old, stems, staged, placed, made_files, committed, temporaries, is_new, _lock: lock };
+        let mut set =
+            Self { dir, old, stems, staged, placed, made_files, committed, temporaries, is_new, _lock: lock };
         let dir = &set.dir;
         let staging = dir.join(STAGING);
         if disk::is_folder(&staging)? {
@@ -263,7 +264,10 @@ impl TableSet {
             Error::Io { path, action, source } => Error::Io {
                 path,
                 action,
-                source: io::Error::new(source.kind(), format!("{source}; {MANIFEST} lists the new set already")),
+                source: io::Error::new(
+                    source.kind(),
+                    format!("{source}; {MANIFEST} lists the new set already"),
+                ),
             },
             other => other,
         })?;
@@ -350,17 +354,20 @@ fn finish(dir: &Path) -> Result<()> {
     done = done.and(disk::sync(dir));
 
     // Without regard to case: on some file systems Gold.exr and gold.exr are one file.
-    let kept: BTreeSet<_> =
-        listed.iter().flat_map(|file| [file.name.to_lowercase(), plain_name(&file.name).to_lowercase()]).collect();
+    let kept: BTreeSet<_> = listed
+        .iter()
+        .flat_map(|file| [file.name.to_lowercase(), plain_name(&file.name).to_lowercase()])
+        .collect();
     for name in leftovers(dir, &listed)? {
         let plain = plain_name(&name);
-        // A name alone does not make a file ours.
-        if !kept.contains(&plain.to_lowercase()) && has_content(&dir.join(&plain), &name) {
-            done = done.and(disk::remove(&dir.join(&plain)));
-        }
-        if !kept.contains(&name.to_lowercase()) {
-            done = done.and(disk::remove(&dir.join(&name)));
-        }
+        // A name alone does not make a file ours. The plain name goes first: nobody could tell it later.
+        let is_ours = !kept.contains(&plain.to_lowercase()) && has_content(&dir.join(&plain), &name);
+        let removed = if is_ours { disk::remove(&dir.join(&plain)) } else { Ok(()) };
+        let removed = removed.and_then(|()| match kept.contains(&name.to_lowercase()) {
+            true => Ok(()),
+            false => disk::remove(&dir.join(&name)),
+        });
+        done = done.and(removed);
     }
     done
 }
@@ -375,7 +382,9 @@ pub(super) fn leftovers(dir: &Path, listed: &[Listed]) -> Result<Vec<String>> {
 /// Whether a file, which is no link, has the content that a listed name tells.
 fn has_content(path: &Path, listed: &str) -> bool {
     let is_file = path.symlink_metadata().is_ok_and(|data| data.is_file());
-    is_file && parts(listed).is_some_and(|[_, digits, _]| manifest::sha256(path).is_ok_and(|hash| hash.starts_with(digits)))
+    is_file
+        && parts(listed)
+            .is_some_and(|[_, digits, _]| manifest::sha256(path).is_ok_and(|hash| hash.starts_with(digits)))
 }
 
 /// `files/NAME.HASH.EXTENSION` of a plain name and a hash.

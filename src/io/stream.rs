@@ -5,8 +5,8 @@
 
 use crate::base::error::{Error, Result};
 use crate::io::Provenance;
-use crate::io::format::BeginRows;
 use crate::io::disk::explain;
+use crate::io::format::BeginRows;
 use crate::table::Table;
 use sha2::{Digest, Sha256};
 use std::fs::{self, File};

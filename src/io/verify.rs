@@ -46,9 +46,11 @@ pub fn verify(dir: &Path) -> Result<Vec<String>> {
             let name = table.get("files").and_then(|files| files.get(format)).and_then(Value::as_str);
             let Some(name) = name.filter(|name| is_plain(name)) else { continue };
             let Ok(file) = File::open(dir.join(name)) else { continue };
-            let (expected, found) = (shape(table, format == EXR.name), shape_of_file(format, BufReader::new(file)));
+            let (expected, found) =
+                (shape(table, format == EXR.name), shape_of_file(format, BufReader::new(file)));
             if found != expected {
-                let words = |shape: Option<Vec<u64>>| shape.map_or("no table".into(), |shape| format!("{shape:?}"));
+                let words =
+                    |shape: Option<Vec<u64>>| shape.map_or("no table".into(), |shape| format!("{shape:?}"));
                 let (expected, found) = (words(expected), words(found));
                 fault(name, &format!("its shape is {found}, and {MANIFEST} says {expected}; bake again"));
             }
@@ -63,7 +65,8 @@ pub(crate) fn leftovers(dir: &Path) -> Result<Vec<String>> {
     let listed = manifest::listed(&read_manifest(dir)?);
     let line = |name: &str, what: &str| format!("{}: {what}", dir.join(name).display());
     let unlisted = set::leftovers(dir, &listed)?;
-    let mut lines: Vec<_> = unlisted.iter().map(|name| line(name, "left over; the next bake removes it")).collect();
+    let mut lines: Vec<_> =
+        unlisted.iter().map(|name| line(name, "left over; the next bake removes it")).collect();
     for (name, what) in set::UNFINISHED {
         if disk::is_there(&dir.join(name))? {
             lines.push(line(name, what));

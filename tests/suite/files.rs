@@ -175,7 +175,9 @@ fn a_changed_or_missing_file_is_found() {
     };
     fs::write(listed(0, "exr"), "no image").unwrap();
     let faults = verify(dir).unwrap().join("\n");
-    for words in ["gold.npy: is not files/gold.", "tin.exr: cannot be read", "SHA-256", "its shape is no table"] {
+    for words in
+        ["gold.npy: is not files/gold.", "tin.exr: cannot be read", "SHA-256", "its shape is no table"]
+    {
         assert!(faults.contains(words), "{words} in {faults}");
     }
     assert!(!faults.contains("png"), "{faults}");
@@ -219,13 +221,17 @@ fn links_are_not_followed() {
     fs::create_dir_all(&precious).unwrap();
     fs::write(precious.join("000000.tile"), "precious").unwrap();
     fs::write(elsewhere.join("thesis.exr"), "precious").unwrap();
-    for (name, is_refused) in [(".gonio-partial", false), (".gonio-staging", true), ("files", true), (".gonio.lock", true)] {
+    for (name, is_refused) in
+        [(".gonio-partial", false), (".gonio-staging", true), ("files", true), (".gonio.lock", true)]
+    {
         let dir = folder.path().join(name.trim_start_matches('.'));
         fs::create_dir(&dir).unwrap();
         symlink(&elsewhere, dir.join(name)).unwrap();
         let written = TableSet::create(&dir).and_then(|mut set| {
             let files = set.write(&brdf("gold"), FORMATS, &provenance())?;
-            set.commit(&json!({ "schema": 1, "gonio": {}, "tables": [TableEntry::new(&brdf("gold"), files)] }))
+            set.commit(
+                &json!({ "schema": 1, "gonio": {}, "tables": [TableEntry::new(&brdf("gold"), files)] }),
+            )
         });
         assert_eq!(written.is_err(), is_refused, "{name}: {written:?}");
         assert!(dir.join(name).is_symlink());
@@ -314,7 +320,11 @@ fn names_become_safe_and_unique_files() {
     bake(&dir, &all);
     assert_eq!(verify(&dir).unwrap(), [""; 0]);
     let files: BTreeSet<_> = snapshot(&dir).into_keys().map(|name| name.to_lowercase()).collect();
-    assert_eq!(files.len(), 3 * names.len() + 2, "with the manifest and the folder of the files that it lists");
+    assert_eq!(
+        files.len(),
+        3 * names.len() + 2,
+        "with the manifest and the folder of the files that it lists"
+    );
     for file in files {
         assert!(file.len() <= 120 && !file.starts_with(['.', '-']), "{file}");
         assert!(file.chars().all(|c| c.is_ascii_alphanumeric() || "._-".contains(c)), "{file}");

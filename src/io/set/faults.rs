@@ -42,7 +42,8 @@ fn snapshot(dir: &Path) -> Set {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_str().unwrap().to_owned();
         if path.is_dir() {
-            files.extend(snapshot(&path).into_iter().map(|(below, bytes)| (format!("{name}/{below}"), bytes)));
+            files
+                .extend(snapshot(&path).into_iter().map(|(below, bytes)| (format!("{name}/{below}"), bytes)));
         } else if name != super::LOCK {
             files.insert(name, fs::read(&path).unwrap());
         }
@@ -50,11 +51,11 @@ fn snapshot(dir: &Path) -> Set {
     files
 }
 
-/// A new file, a changed one, one that stays and one that goes; a set where none was; the same set again.
+/// A new file, a changed one and one that goes; a set where none was; the same set again.
 #[test]
 fn any_fault_at_any_step_leaves_the_old_set_or_the_new() {
-    let first = set(&[("gold", "old gold"), ("tin", "tin"), ("iron", "iron")]);
-    let second = set(&[("gold", "new gold"), ("tin", "tin"), ("lead", "lead")]);
+    let first = set(&[("gold", "old gold"), ("tin", "tin")]);
+    let second = set(&[("gold", "new gold"), ("lead", "lead")]);
     let empty = Set::new();
     let mut tried = [0; 2];
     for (old, new) in [(&first, &second), (&empty, &second), (&first, &first)] {
@@ -82,7 +83,8 @@ fn any_fault_at_any_step_leaves_the_old_set_or_the_new() {
                     assert!(verify(&dir).unwrap().is_empty(), "{place}");
                 } else if fault == Fault::Error && found == *old && old != new {
                     let after = if dir.exists() { snapshot(&dir) } else { Set::new() };
-                    let left: Vec<_> = after.keys().filter(|name| !name.starts_with(super::STAGING)).collect();
+                    let left: Vec<_> =
+                        after.keys().filter(|name| !name.starts_with(super::STAGING)).collect();
                     assert_eq!(left, before.keys().collect::<Vec<_>>(), "{place}");
                 }
                 // The next bake is in nobody's way, finishes what is to be finished, and leaves nothing.
