@@ -113,24 +113,23 @@ impl Output {
     /// # Errors
     /// When there can be no such file.
     pub fn create(path: &Path) -> Result<Self> {
-        let (to, old) = match fs::canonicalize(path) {
-            Ok(to) => {
-                let old = fs::metadata(&to).map_err(explain("look at", path))?;
-                (if path.is_symlink() { to } else { path.to_owned() }, Some(old))
+        let old = match fs::metadata(path) {
+            Ok(old) => Some(old),
+            Err(error) if error.kind() == ErrorKind::NotFound && !path.is_symlink() => None,
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                let path = path.display();
+                return Err(Error::input(format!("{path}: a link that leads to no file; give the file")));
             }
-            Err(_) if path.is_symlink() => {
-                return Err(Error::input(format!(
-                    "{}: a link that leads to no file; give the file",
-                    path.display()
-                )));
-            }
-            Err(error) if error.kind() == ErrorKind::NotFound => (path.to_owned(), None),
             Err(error) => return Err(explain("write", path)(error)),
         };
         if old.as_ref().is_some_and(fs::Metadata::is_dir) {
             return Err(Error::input(format!("{}: it is a folder; give a file", path.display())));
         }
         let is_stream = old.as_ref().is_some_and(|old| !old.is_file());
+        let to = match path.is_symlink() && !is_stream {
+            true => fs::canonicalize(path).map_err(explain("write", path))?,
+            false => path.to_owned(),
+        };
         let above = folder_of(to.parent().unwrap_or(Path::new("")));
         fs::metadata(above).map_err(explain("write", path))?;
         let name = to.file_name().unwrap_or_default().to_string_lossy();

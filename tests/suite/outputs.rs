@@ -47,7 +47,8 @@ fn folder() -> TempDir {
 
 const EVAL: &str = "eval --model lambert --set albedo=0.5 --device cpu --pairs pairs.csv --out out.csv";
 const PLOT: &str = "plot lambert --device cpu --out a.png --out a.svg";
-const CHECK: &str = "check --model lambert --device cpu --budget 1e3 --junit check.xml --out pictures";
+const CHECK: &str =
+    "check --model lambert --set albedo=0.5 --device cpu --budget 1e3 --junit check.xml --out pictures";
 const ATLAS: &str = "atlas --model lambert --device cpu --budget 1000 --out atlas";
 
 /// A trap with the name that temporary files once had, a link to somebody's file.
@@ -101,7 +102,7 @@ fn a_link_stays_a_link_and_permissions_stay() {
 #[test]
 fn devices_are_written_to_and_not_replaced() {
     let dir = folder();
-    let args = "check --model lambert --device cpu --budget 1e3 --json --junit /dev/stderr";
+    let args = "check --model lambert --set albedo=0.5 --device cpu --budget 1e3 --json --junit /dev/stderr";
     let output = run(dir.path(), args);
     assert!(
         output.status.success() && text(&output.stderr).contains("<testsuites"),
