@@ -279,6 +279,31 @@ fn verify_says_whether_a_set_is_whole() {
     assert!(text(&broken.stderr).contains("bake again"));
 }
 
+/// Each command makes the axes that its subject needs, and what `check` and `atlas` print can be pasted.
+#[test]
+fn anisotropic_models_go_through_every_command() {
+    let dir = folder();
+    let trade = "trade --model ggx-anisotropic --size 2 --budget 0.01s --device cpu --out trade";
+    let set = "--set roughness=0.5 --set aspect=0.5";
+    let pairs =
+        format!("eval --model beckmann-anisotropic {set} --device cpu --pairs pairs.csv --out out.csv");
+    for args in [trade, &pairs] {
+        let output = run(dir.path(), args);
+        assert!(output.status.success(), "{args}: {}", text(&output.stderr));
+    }
+    // The energy of an anisotropic model takes minutes; the command that is printed is made in the same way for all.
+    let check = run(dir.path(), "check --model lambert --set albedo=0.5 --device cpu --budget 1e3");
+    let atlas = run(dir.path(), "atlas --model ggx-anisotropic --budget 1000");
+    let printed = [text(&check.stdout), text(&atlas.stdout)].concat();
+    let commands: Vec<_> =
+        printed.lines().filter_map(|line| Some(line.split_once("gonio eval ")?.1)).collect();
+    assert!(commands.len() > 4, "{printed}{}", text(&check.stderr));
+    for command in commands {
+        let output = run(dir.path(), &format!("eval {command} --device cpu"));
+        assert!(output.status.success(), "gonio eval {command}: {}", text(&output.stderr));
+    }
+}
+
 /// Names of materials that are no characters of XML or turn the direction of writing, and keys that act on a terminal.
 #[test]
 fn text_of_others_is_escaped_wherever_it_goes() {
