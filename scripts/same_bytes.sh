@@ -138,19 +138,21 @@ with open("pairs.csv", "w") as file:
 END
 }
 
-# Hashes of what is below this folder, but for in/.
+# Hashes of what is below this folder, but for in/, by plain names: those in files/ have the content in them.
 hashes() {
     python3 - <<'END'
 import hashlib, json, pathlib
 
 def stays(value):
     if isinstance(value, dict):
-        dropped = ("seconds", "stages", "gonio", "sha256")
+        dropped = ("seconds", "stages", "gonio", "sha256", "files")
         return {key: stays(of) for key, of in value.items() if key not in dropped}
     return [stays(of) for of in value] if isinstance(value, list) else value
 
 for path in sorted(path.as_posix() for path in pathlib.Path(".").rglob("*.*")):
-    if path.endswith(".npy"):
+    if "/files/" in path:
+        continue
+    elif path.endswith(".npy"):
         data = pathlib.Path(path).read_bytes()
     elif path.endswith(".json"):
         data = json.dumps(stays(json.loads(pathlib.Path(path).read_bytes())), indent=1).encode()

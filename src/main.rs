@@ -1,7 +1,5 @@
 //! The `gonio` command. See `gonio --help`.
 
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
+fn main() {
     gonio::cli::main()
 }

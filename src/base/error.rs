@@ -29,7 +29,7 @@ pub enum Error {
     Promise(String),
 
     /// The user asked to stop.
-    #[error("interrupted; the tables on disk are as they were")]
+    #[error("interrupted; the files on disk are as they were")]
     Interrupted,
 
     /// A fault of ours, not of the input.

@@ -173,7 +173,9 @@ pub fn bake_set(
                 let checked = computed.check(table, options.check, &|share| observer.advance(share));
                 (checked, start.seconds())
             };
-            checking = Some(Checking { table, thread: scope.spawn(check) });
+            let thread = thread::Builder::new().spawn_scoped(scope, check);
+            let no_thread = Error::io("start a thread to check", table.name());
+            checking = Some(Checking { table, thread: thread.map_err(no_thread)? });
             if let Some((table, checked)) = before {
                 finished.take(table, checked, &mut timings)?;
             }

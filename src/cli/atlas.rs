@@ -1,10 +1,10 @@
 //! `gonio atlas`
 
 use crate::backend::gpu::DeviceChoice;
-use crate::bake::{Evaluator, Observer};
+use crate::bake::Observer;
 use crate::base::error::{Error, Result};
 use crate::cli::watch::Watch;
-use crate::cli::{HEADING, device_json, print_beside, print_json};
+use crate::cli::{HEADING, device_json, open, print_beside, print_json};
 use crate::lab::atlas;
 use crate::lab::atlas::{Band, DEFAULT_BUDGET, Page, PageKind};
 use crate::model;
@@ -50,17 +50,17 @@ Exit codes: 0 all errors are as promised, 1 an error is larger, 2 bad input, 3 n
 
 pub fn run(args: &Args) -> Result<()> {
     let models = models(args)?;
-    let (evaluator, line) = Evaluator::choose(&args.device)?;
+    let (evaluator, line) = open(&args.device)?;
     let say = |text: &str| print_beside(args.json, text);
     say(&format!("{HEADING}device{HEADING:#}  {line}"))?;
-    let device = device_json(&evaluator);
+    let device = device_json(evaluator);
     let watch = Watch::new(if args.study { atlas::STEPS } else { models.len() });
     let pages: Result<Vec<_>> = if args.study {
-        atlas::study(&evaluator, args.budget, &watch)
+        atlas::study(evaluator, args.budget, &watch)
     } else {
         let measure = |model: &&'static Model| {
             watch.begin(model.name);
-            atlas::measure_model(&evaluator, model, args.budget, &watch)
+            atlas::measure_model(evaluator, model, args.budget, &watch)
         };
         models.iter().map(measure).collect()
     };

@@ -1,7 +1,6 @@
 //! `gonio bake`
 
 use crate::backend::gpu::DeviceChoice;
-use crate::bake::Evaluator;
 use crate::base::error::{Error, Result};
 use crate::base::timings::Stopwatch;
 use crate::base::timings::Timings;
@@ -9,14 +8,13 @@ use crate::base::words::alternatives;
 use crate::batch::{Baked, SetOptions, Streaming, bake_set};
 use crate::check::Check;
 use crate::cli::watch::Watch;
-use crate::cli::{HEADING, print, print_json, tell, warn};
+use crate::cli::{HEADING, open, print, print_json, tell, warn};
 use crate::io::target::IDENTITY;
 use crate::io::{Format, format};
 use crate::scene;
 use crate::scene::planner::{Plan, Selection, UNUSED};
 use crate::table::quantity;
 use serde_json::json;
-use std::mem::ManuallyDrop;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -113,9 +111,7 @@ pub fn run(args: &Args) -> Result<()> {
     plan.warnings.iter().for_each(|w| warn(w));
 
     let start = Stopwatch::start();
-    let (evaluator, line) = Evaluator::choose(&args.device)?;
-    // The process ends with the bake: drivers would take some 20 ms to take apart what the system frees at once.
-    let evaluator = ManuallyDrop::new(evaluator);
+    let (evaluator, line) = open(&args.device)?;
     stages.device = start.seconds();
     say.line(&format!("{HEADING}device{HEADING:#}  {line}"))?;
 
@@ -124,7 +120,7 @@ pub fn run(args: &Args) -> Result<()> {
     formats.dedup();
     let options =
         SetOptions { formats, target: &IDENTITY, check: args.check, streaming: Streaming::default() };
-    let baked = bake_set(&plan, &args.scene, &evaluator, out, &options, stages, &watch);
+    let baked = bake_set(&plan, &args.scene, evaluator, out, &options, stages, &watch);
     watch.finish();
     let baked = baked?;
     baked.warnings[plan.warnings.len()..].iter().for_each(|w| warn(w));

@@ -7,13 +7,14 @@ use crate::backend::gpu::{Device, DeviceChoice, INSTALL};
 use crate::bake::Evaluator;
 use crate::base::error::{Error, Result};
 use crate::base::timings::Stopwatch;
+use crate::cli::print::{ERROR, GOOD, WARNING};
 use crate::cli::watch::Watch;
-use crate::cli::{HEADING, device_json, junit, print_beside, print_json, warn};
+use crate::cli::{HEADING, device_json, junit, open, print_beside, print_json, warn};
+use crate::io::Outputs;
 use crate::scene;
 use crate::verify;
 use crate::verify::user_shader::{UserFunction, UserShader, directions};
 use crate::verify::{Finding, Input, Options, Parameter, Report, STEPS, Symmetry, Verdict};
-use anstyle::{AnsiColor, Style};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use targets::CheckTarget;
@@ -83,11 +84,6 @@ If a format is known to break a promise, gonio reports it and checks the known b
 Exit codes: 0 all promises hold (or break within their known bound), 1 a promise is broken, 2 bad input,
 3 no device, 130 interrupted";
 
-/// Bold green, and bold red.
-const KEPT: Style = AnsiColor::Green.on_default().bold();
-const BROKEN: Style = AnsiColor::Red.on_default().bold();
-const DECLARED: Style = AnsiColor::Yellow.on_default().bold();
-
 /// Parses a count, also as 1e8.
 fn budget(text: &str) -> Result<u64, String> {
     let value: f64 = text.parse().map_err(|_| format!("\"{text}\" is not a number"))?;
@@ -102,14 +98,14 @@ pub fn run(args: &Args) -> Result<()> {
     match (&args.scene, &args.model, &args.wgsl, &args.entry) {
         (Some(path), ..) => {
             let scene = scene::read(path)?;
-            let (evaluator, line) = Evaluator::choose(&args.device)?;
+            let (evaluator, line) = open(&args.device)?;
             scene.warnings.iter().for_each(|warning| warn(warning));
-            let targets = targets::scene(path, &scene, args.material.as_deref(), &evaluator)?;
-            check_targets(args, targets, &evaluator, &line)
+            let targets = targets::scene(path, &scene, args.material.as_deref(), evaluator)?;
+            check_targets(args, targets, evaluator, &line)
         }
         (_, Some(model), ..) => {
-            let (evaluator, line) = Evaluator::choose(&args.device)?;
-            check_targets(args, vec![targets::model(args, model, &evaluator)?], &evaluator, &line)
+            let (evaluator, line) = open(&args.device)?;
+            check_targets(args, vec![targets::model(args, model, evaluator)?], evaluator, &line)
         }
         (_, _, Some(path), Some(entry)) => check_shader(args, path, entry),
         _ => Err(Error::input("give a SCENE, --model NAME, or --wgsl FILE and --entry NAME")),
@@ -121,6 +117,10 @@ fn check_targets(args: &Args, targets: Vec<CheckTarget>, evaluator: &Evaluator, 
     print_beside(args.json, &format!("{HEADING}device{HEADING:#}  {line}"))?;
     let watch = Watch::new(STEPS * targets.len());
     let mut all = Vec::new();
+    let mut outputs = Outputs::default();
+    if let Some(dir) = &args.out {
+        outputs.folder(dir)?;
+    }
     for (k, CheckTarget { mut subject, command }) in targets.into_iter().enumerate() {
         let start = Stopwatch::start();
         let report = verify::check(&mut subject, &args.options(), &watch)?;
@@ -132,7 +132,7 @@ fn check_targets(args: &Args, targets: Vec<CheckTarget>, evaluator: &Evaluator, 
         if let Some(dir) = &args.out {
             let plain = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
             let stem = format!("{k}_{}", report.subject.chars().map(plain).collect::<String>());
-            for path in pictures::write(dir, &stem, &mut subject, &report)? {
+            for path in pictures::write(dir, &stem, &mut subject, &report, &mut outputs)? {
                 watch.hide(|| print_beside(args.json, &format!("{:15}{}", "", path.display())))?;
             }
         }
@@ -140,8 +140,9 @@ fn check_targets(args: &Args, targets: Vec<CheckTarget>, evaluator: &Evaluator, 
     }
     watch.finish();
     if let Some(path) = &args.junit {
-        junit::write(path, &all)?;
+        junit::write(path, &all, &mut outputs)?;
     }
+    outputs.commit()?;
     if args.json {
         let subjects = all.iter().map(|checked| {
             let findings = checked.report.findings.iter().zip(&checked.inputs).map(|(finding, eval)| {
@@ -184,8 +185,10 @@ fn check_shader(args: &Args, path: &Path, entry: &str) -> Result<()> {
             "WGSL needs a Vulkan device, and there is no CPU path for it ({line}). {INSTALL}"
         ))
     })?;
+    // It lives as long as the process, see `open`.
+    let device: &'static Device = Box::leak(Box::new(device));
     let symmetry = Symmetry { isotropic: !args.anisotropic, bilateral: !args.anisotropic };
-    let mut subject = UserShader::new(&device, function, parameters, args.cosine, symmetry)?;
+    let mut subject = UserShader::new(device, function, parameters, args.cosine, symmetry)?;
 
     let start = Stopwatch::start();
     let watch = Watch::new(STEPS);
@@ -205,7 +208,9 @@ fn check_shader(args: &Args, path: &Path, entry: &str) -> Result<()> {
     let inputs = report.findings.iter().map(|f| f.input.as_ref().map(Input::to_string)).collect();
     let checked = [Checked { report, seconds, inputs }];
     if let Some(path) = &args.junit {
-        junit::write(path, &checked)?;
+        let mut outputs = Outputs::default();
+        junit::write(path, &checked, &mut outputs)?;
+        outputs.commit()?;
     }
     let report = &checked[0].report;
     if args.json {
@@ -226,7 +231,8 @@ fn check_shader(args: &Args, path: &Path, entry: &str) -> Result<()> {
         print_json(&json!({
             "subject": report.subject,
             "device": { "kind": device.kind(), "name": device.name(), "driver": device.driver() },
-            "evaluated": report.evaluated, "seconds": seconds, "kept": report.is_kept(), "findings": findings,
+            "evaluated": report.evaluated, "seconds": seconds, "kept": report.is_kept(), "notes": report.notes,
+            "findings": findings,
         }))?;
     }
     verdict(&checked)
@@ -303,9 +309,9 @@ fn parameters(function: &UserFunction, sets: &[String]) -> Result<Vec<Parameter>
 /// Formats one finding as a line.
 fn show(finding: &Finding) -> String {
     let (style, word) = match finding.verdict {
-        Verdict::Kept => (KEPT, "kept    "),
-        Verdict::Declared => (DECLARED, "declared"),
-        Verdict::Broken => (BROKEN, "BROKEN  "),
+        Verdict::Kept => (GOOD, "kept    "),
+        Verdict::Declared => (WARNING, "declared"),
+        Verdict::Broken => (ERROR, "BROKEN  "),
     };
     let note = finding.note.as_ref().map_or(String::new(), |note| format!("; {note}"));
     format!("{:13}  {style}{word}{style:#}  {}{note}", finding.property, finding.said)

@@ -5,7 +5,7 @@ use crate::bake::{Evaluator, Observer};
 use crate::base::error::Result;
 use crate::cli::plot::PlotView;
 use crate::cli::watch::Watch;
-use crate::cli::{HEADING, device_json, models as details, print_beside, print_json};
+use crate::cli::{HEADING, device_json, models as details, open, print_beside, print_json};
 use crate::figure::picture::{MOST_SETTINGS, Radius};
 use crate::io::TableSet;
 use crate::io::draw::svg::escape;
@@ -56,7 +56,7 @@ struct Entry {
 
 pub fn run(args: &Args) -> Result<()> {
     let entries = entries()?;
-    let (evaluator, line) = Evaluator::choose(&args.device)?;
+    let (evaluator, line) = open(&args.device)?;
     print_beside(args.json, &format!("{HEADING}device{HEADING:#}  {line}"))?;
     let mut set = TableSet::create(&args.out)?;
     // Before the work, not after it.
@@ -66,7 +66,7 @@ pub fn run(args: &Args) -> Result<()> {
         .chain(PAGES.map(String::from))
         .try_for_each(|name| set.refuse_foreign(&name))?;
     let watch = Watch::new(entries.iter().map(|entry| entry.view.steps()).sum::<usize>());
-    let manifest = write(&mut set, &entries, &evaluator, &watch);
+    let manifest = write(&mut set, &entries, evaluator, &watch);
     watch.finish();
     let manifest = manifest?;
     set.commit(&manifest)?;
@@ -164,7 +164,7 @@ fn write(
 ) -> Result<Value> {
     let (mut files, mut pictures) = (Map::new(), Vec::new());
     let mut add = |name: String, bytes: &[u8]| -> Result<()> {
-        let sha256 = set.add(&name, bytes)?;
+        let (name, sha256) = set.add(&name, bytes)?;
         files.insert(name, sha256.into());
         Ok(())
     };

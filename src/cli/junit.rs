@@ -3,19 +3,18 @@
 //! There is no standard; this is what Jenkins, GitLab and GitHub's actions read alike.
 
 use crate::base::error::{Error, Result};
+use crate::base::words::printable;
 use crate::cli::check::Checked;
+use crate::io::Outputs;
 use crate::verify::{Finding, Verdict};
 use quick_xml::Writer;
 use quick_xml::events::BytesText;
 use std::io;
 use std::path::Path;
 
-/// Writes the reports, replacing the file only when all of them are written.
-pub fn write(path: &Path, all: &[Checked]) -> Result<()> {
-    let text = xml(all).map_err(|e| Error::Internal(format!("JUnit: {e}")))?;
-    let partial = path.with_added_extension("partial");
-    std::fs::write(&partial, text).map_err(Error::io("write", path))?;
-    std::fs::rename(&partial, path).map_err(Error::io("write", path))
+/// Stages the reports.
+pub fn write(path: &Path, all: &[Checked], outputs: &mut Outputs) -> Result<()> {
+    outputs.add(path, xml(all).map_err(|e| Error::Internal(format!("JUnit: {e}")))?)
 }
 
 /// Counts tests, failures and seconds, for the attributes of one suite or of all.
@@ -51,12 +50,17 @@ fn xml(all: &[Checked]) -> io::Result<Vec<u8>> {
 /// Writes the test suite of a subject.
 fn suite(writer: &mut Writer<Vec<u8>>, checked: &Checked) -> io::Result<()> {
     let report = &checked.report;
-    let suite = writer.create_element("testsuite").with_attribute(("name", report.subject.as_str()));
+    let name = printable(&report.subject);
+    let suite = writer.create_element("testsuite").with_attribute(("name", name.as_ref()));
     let sums = totals(std::iter::once(checked));
     let suite = sums.iter().fold(suite, |e, (key, value)| e.with_attribute((*key, value.as_str())));
     suite.write_inner_content(|writer| {
         for (finding, input) in report.findings.iter().zip(&checked.inputs) {
-            case(writer, &report.subject, finding, input.as_deref())?;
+            case(writer, &name, finding, input.as_deref())?;
+        }
+        if !report.notes.is_empty() {
+            let notes = report.notes.join("\n");
+            writer.create_element("system-out").write_text_content(BytesText::new(&printable(&notes)))?;
         }
         Ok(())
     })?;
@@ -78,13 +82,14 @@ fn case(
     if let Some(input) = input {
         details += &format!("\nworst input: {input}");
     }
+    let [said, details] = [&said, &details].map(|text| printable(text));
     let case = [("classname", subject), ("name", finding.property)];
     let case = writer.create_element("testcase").with_attributes(case);
     case.write_inner_content(|writer| {
         match finding.verdict {
             Verdict::Broken => writer
                 .create_element("failure")
-                .with_attributes([("type", finding.property), ("message", said.as_str())])
+                .with_attributes([("type", finding.property), ("message", said.as_ref())])
                 .write_text_content(BytesText::new(&details))?,
             _ => writer.create_element("system-out").write_text_content(BytesText::new(&details))?,
         };

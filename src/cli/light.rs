@@ -11,7 +11,7 @@ use crate::check::Check;
 use crate::cli::subject;
 use crate::cli::subject::key_value;
 use crate::cli::watch::Watch;
-use crate::cli::{HEADING, print_beside, print_json, warn};
+use crate::cli::{HEADING, open, print_beside, print_json, warn};
 use crate::io::{Format, TableSet, format, sha256};
 use crate::light;
 use crate::light::bake::Order;
@@ -148,13 +148,13 @@ pub fn run(args: &Args) -> Result<()> {
     if needs && lit.is_none() {
         return Err(Error::input("nothing is lit; give a scene, a recipe or a model before the options"));
     }
-    let (evaluator, line) = Evaluator::choose(&args.device)?;
+    let (evaluator, line) = open(&args.device)?;
     let say = |text: &str| print_beside(args.json, text);
     say(&format!("{HEADING}device{HEADING:#}  {line}"))?;
     say(&format!("{HEADING}light{HEADING:#}   {}: {}", source.name, light.summary()))?;
     let mut set = TableSet::create(&args.out)?;
     let watch = Watch::new(5);
-    let computed = compute(args, &light, &source, lit.as_ref(), &evaluator, &watch, &mut set);
+    let computed = compute(args, &light, &source, lit.as_ref(), evaluator, &watch, &mut set);
     watch.finish();
     let (tables, manifest) = computed?;
     set.commit(&manifest)?;

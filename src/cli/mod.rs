@@ -10,16 +10,21 @@ mod junit;
 mod light;
 mod models;
 mod plot;
+mod print;
+mod stop;
 mod subject;
+mod threads;
 mod trade;
+mod verify;
 mod watch;
 
+use crate::backend::gpu::DeviceChoice;
+use crate::bake::Evaluator;
 use crate::base::error::{Error, Result};
 use crate::light::set::device_json;
-use anstyle::{AnsiColor, Style};
 use clap::{Parser, Subcommand};
-use std::io::{ErrorKind, Write};
-use std::process::ExitCode;
+use print::{HEADING, fail, print, print_beside, print_json, tell, warn};
+use std::io::Write;
 
 #[derive(Parser)]
 #[command(name = "gonio", version, about, max_term_width = 100, after_help = AFTER_HELP)]
@@ -32,6 +37,8 @@ struct Cli {
 enum Command {
     /// Bake the tables of a scene or recipe and measure their error
     Bake(bake::Args),
+    /// Compare the files of a folder with its manifest
+    Verify(verify::Args),
     /// Evaluate a BRDF for one pair of directions or for a list of pairs
     Eval(eval::Args),
     /// Search for inputs at which a BRDF is not finite, not reciprocal, or gains energy
@@ -55,6 +62,7 @@ enum Command {
 const AFTER_HELP: &str = "\
 Examples:
   gonio bake scene.gltf --out tables
+  gonio verify tables
   gonio eval --model ggx --set roughness=0.3 --theta-i 45deg --theta-e 45deg
   gonio check --wgsl brdf.wgsl --entry brdf --set roughness=0.05..1
   gonio atlas --out atlas
@@ -65,20 +73,16 @@ Examples:
   gonio models ggx
   gonio devices
 
-Exit codes: 0 success, 1 a table misses its tolerance, or a BRDF breaks a promise, 2 bad input, 3 no device,
-70 internal error, 130 interrupted";
+Exit codes: 0 success, 1 a table misses its tolerance, a BRDF breaks a promise, or files are not those of
+their manifest, 2 bad input, 3 no device, 70 internal error, 130 interrupted";
 
-/// Bold red.
-const ERROR: Style = AnsiColor::Red.on_default().bold();
-/// Bold yellow.
-const WARNING: Style = AnsiColor::Yellow.on_default().bold();
-/// Bold.
-const HEADING: Style = Style::new().bold();
-
-/// Runs the command and returns its exit code.
-pub fn main() -> ExitCode {
-    let result = match Cli::parse().command {
+/// Runs the command and ends the process with its exit code.
+pub fn main() -> ! {
+    stop::listen();
+    let command = Cli::parse().command;
+    let result = threads::start().and_then(|()| match command {
         Command::Bake(args) => bake::run(&args),
+        Command::Verify(args) => verify::run(&args),
         Command::Eval(args) => eval::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Atlas(args) => atlas::run(&args),
@@ -88,14 +92,24 @@ pub fn main() -> ExitCode {
         Command::Light(args) => light::run(&args),
         Command::Models(args) => models::run(&args),
         Command::Devices(args) => devices::run(&args),
-    };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            tell(&format!("{ERROR}error:{ERROR:#} {error}"));
-            ExitCode::from(exit_code(&error))
-        }
-    }
+    });
+    stop::wait_if_asked();
+    let code = result.map_or_else(
+        |error| {
+            fail(&error);
+            exit_code(&error)
+        },
+        |()| 0,
+    );
+    let _ = std::io::stdout().flush(); // a reader that has gone is no error
+    stop::end(code)
+}
+
+/// Opens what evaluates a command. It lives as long as the process, which ends with the command: drivers would take time to
+/// take apart what the system frees at once, and a device that hangs would hold the process.
+fn open(choice: &DeviceChoice) -> Result<(&'static Evaluator, String)> {
+    let (evaluator, line) = Evaluator::choose(choice)?;
+    Ok((Box::leak(Box::new(evaluator)), line))
 }
 
 /// Maps an error to the exit code that docs/drivers.md lists for its kind.
@@ -106,37 +120,5 @@ fn exit_code(error: &Error) -> u8 {
         Error::Device(_) => 3,
         Error::Internal(_) => 70,
         Error::Interrupted => 130,
-    }
-}
-
-/// Prints a line on stderr. A closed stderr is no error: there is nobody left to tell.
-fn tell(text: &str) {
-    let _ = writeln!(anstream::stderr(), "{text}");
-}
-
-fn warn(message: &str) {
-    tell(&format!("{WARNING}warning:{WARNING:#} {message}"));
-}
-
-/// Prints a message on stdout, or on stderr if stdout carries JSON.
-fn print_beside(json: bool, text: &str) -> Result<()> {
-    if json {
-        tell(text);
-        return Ok(());
-    }
-    print(text)
-}
-
-/// Prints a value as JSON on stdout.
-fn print_json(value: &impl serde::Serialize) -> Result<()> {
-    let text = serde_json::to_string_pretty(value).map_err(|e| Error::Internal(e.to_string()))?;
-    print(&text)
-}
-
-/// Prints a line on stdout. A reader that closes the pipe early, as `head` does, is no error.
-fn print(text: &str) -> Result<()> {
-    match writeln!(anstream::stdout(), "{text}") {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::io("write", "stdout")(error)),
-        _ => Ok(()),
     }
 }

@@ -7,10 +7,10 @@ use crate::cli::check::quoted;
 use crate::cli::subject;
 use crate::cli::subject::key_value;
 use crate::cli::watch::Watch;
-use crate::cli::{HEADING, device_json, models as details, print_beside, print_json};
+use crate::cli::{HEADING, device_json, models as details, open, print_beside, print_json};
 use crate::figure::picture::{MOST_SETTINGS, MOST_THETAS, Picture, Plate, Radius, draw};
 use crate::figure::{Figure, FigureSubject};
-use crate::io::write_files;
+use crate::io::Outputs;
 use crate::model;
 use crate::scene;
 use serde_json::{Value, json};
@@ -103,18 +103,18 @@ pub fn run(args: &Args) -> Result<()> {
     };
     let formats = out.iter().map(|path| PictureFormat::of(path)).collect::<Result<Vec<_>>>()?;
 
-    let (evaluator, line) = Evaluator::choose(&args.device)?;
+    let (evaluator, line) = open(&args.device)?;
     let say = |text: &str| print_beside(args.json, text);
     say(&format!("{HEADING}device{HEADING:#}  {line}"))?;
     let watch = Watch::new(view.subjects.len() + 1);
-    let shown = view.show(&args.theta, args.radius, &evaluator, &watch);
+    let shown = view.show(&args.theta, args.radius, evaluator, &watch);
     watch.finish();
     let shown = shown?;
-    let mut files = Vec::new();
+    let mut outputs = Outputs::default();
     for (path, format) in out.iter().zip(formats) {
-        files.push((path.clone(), format.encode(&shown.picture)?));
+        outputs.add(path, format.encode(&shown.picture)?)?;
     }
-    write_files(&files)?;
+    outputs.commit()?;
     for line in shown.lines() {
         say(&line)?;
     }
@@ -123,7 +123,7 @@ pub fn run(args: &Args) -> Result<()> {
         return Ok(());
     }
     let mut json = shown.to_json();
-    json["device"] = device_json(&evaluator);
+    json["device"] = device_json(evaluator);
     json["files"] = json!(out);
     print_json(&json)
 }

@@ -1,16 +1,15 @@
 //! `gonio trade`
 
 use crate::backend::gpu::DeviceChoice;
-use crate::bake::Evaluator;
 use crate::base::error::{Error, Result};
 use crate::cli::watch::Watch;
-use crate::cli::{HEADING, device_json, print_beside, print_json, warn};
+use crate::cli::{HEADING, device_json, open, print_beside, print_json, warn};
 use crate::lab::trade::{Options, Point, Trade, measure, write};
 use crate::model;
 use crate::plan::TablePlan;
 use crate::scene;
 use crate::scene::planner::{Plan, Selection};
-use crate::table::axis::{Axis, Variable};
+use crate::table::axis::Axis;
 use crate::table::quantity;
 use std::path::PathBuf;
 
@@ -79,13 +78,13 @@ fn seconds(text: &str) -> Result<f64, String> {
 
 pub fn run(args: &Args) -> Result<()> {
     let table = table(args)?;
-    let (evaluator, line) = Evaluator::choose(&args.device)?;
+    let (evaluator, line) = open(&args.device)?;
     let say = |text: &str| print_beside(args.json, text);
     say(&format!("{HEADING}device{HEADING:#}  {line}"))?;
-    let device = device_json(&evaluator);
+    let device = device_json(evaluator);
     let options = Options { budget: args.budget, check_all: args.check == "all" };
     let watch = Watch::new(options.steps());
-    let trade = measure(&table, &evaluator, &options, &watch);
+    let trade = measure(&table, evaluator, &options, &watch);
     watch.finish();
     let trade = trade?;
     let json = write(&args.out, &trade, &device)?;
@@ -102,9 +101,7 @@ fn table(args: &Args) -> Result<TablePlan> {
     let Some(path) = &args.recipe else {
         let quantity = quantity::find(args.quantity.as_deref().unwrap_or("split_sum"))?;
         let model = model::find(args.model.as_deref().unwrap_or("ggx"))?;
-        let rough = model.shape.map(|_| Variable::Roughness);
-        let variables = rough.into_iter().chain(quantity.variables.iter().copied());
-        let axes = variables.map(|v| Axis::natural(v, args.size)).collect::<Result<_>>()?;
+        let axes = model.variables(quantity).map(|v| Axis::natural(v, args.size)).collect::<Result<_>>()?;
         return TablePlan::basis(format!("{}.{}", model.name, quantity.name), quantity, model, None, axes);
     };
     let selection = Selection { quantity: args.quantity.clone(), ..Selection::default() };

@@ -1,18 +1,27 @@
-//! The progress bar and Ctrl-C.
+//! The progress bar.
 
 use crate::bake::Observer;
-use crate::base::error::{Error, Result};
+use crate::base::error::Result;
 use crate::base::timings::Stopwatch;
+use crate::base::words::printable;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
-/// Shows a progress bar after a second, on a terminal only, and stops the work on Ctrl-C.
+/// The bar that is shown, to be removed when the process ends.
+static SHOWN: Mutex<Option<ProgressBar>> = Mutex::new(None);
+
+/// Removes the bar that is shown.
+pub fn clear() {
+    if let Some(bar) = &*SHOWN.lock().unwrap_or_else(PoisonError::into_inner) {
+        bar.finish_and_clear();
+    }
+}
+
+/// Shows a progress bar after a second, on a terminal only.
 pub struct Watch {
     bar: ProgressBar,
     start: Stopwatch,
     step: Mutex<Progress>,
-    stop: Arc<AtomicBool>,
 }
 
 /// Counts the steps begun, and the share done of the last.
@@ -29,15 +38,11 @@ const PATIENCE: f64 = 1.0;
 impl Watch {
     /// Expects this number of steps.
     pub fn new(steps: usize) -> Self {
-        let stop = Arc::new(AtomicBool::new(false));
-        let asked = stop.clone();
-        // Where no handler can be set, Ctrl-C ends the process; files are safe then too.
-        let _ = ctrlc::set_handler(move || asked.store(true, Ordering::Relaxed));
         let bar = ProgressBar::with_draw_target(Some(steps as u64 * TICKS), ProgressDrawTarget::hidden());
         if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}  {elapsed}") {
             bar.set_style(style);
         }
-        Self { bar, start: Stopwatch::start(), step: Mutex::new(Progress { count: 0, share: 0.0 }), stop }
+        Self { bar, start: Stopwatch::start(), step: Mutex::new(Progress { count: 0, share: 0.0 }) }
     }
 
     /// Prints while the bar is hidden.
@@ -53,20 +58,17 @@ impl Watch {
 
 impl Observer for Watch {
     fn begin(&self, what: &str) {
-        self.bar.set_message(what.to_string());
+        self.bar.set_message(printable(what).into_owned());
         let mut step = self.step.lock().unwrap_or_else(PoisonError::into_inner);
         *step = Progress { count: step.count + 1, share: 0.0 };
         self.bar.set_position((step.count - 1) * TICKS);
     }
 
     fn advance(&self, share: f64) -> Result<()> {
-        if self.stop.load(Ordering::Relaxed) {
-            self.bar.finish_and_clear();
-            return Err(Error::Interrupted);
-        }
         if self.bar.is_hidden() && self.start.seconds() > PATIENCE {
             // indicatif draws on a terminal only.
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
+            *SHOWN.lock().unwrap_or_else(PoisonError::into_inner) = Some(self.bar.clone());
         }
         let mut step = self.step.lock().unwrap_or_else(PoisonError::into_inner);
         // Two tables may be under way, of which the bar shows one.

@@ -149,7 +149,8 @@ impl Polynomial {
                 (0.5 * ((x - 1.0).hypot(y) + (x + 1.0).hypot(y))).max(1.0).acosh()
             });
             let most = q.fold(MAX_Q, f64::min);
-            let growth = |q: f64| f64::from(power) * largest_distance_from_1(delta, middle, half, q).max(1.0).ln();
+            let growth =
+                |q: f64| f64::from(power) * largest_distance_from_1(delta, middle, half, q).max(1.0).ln();
             // Where q is 0, no number of points is enough.
             let points = |q: f64| 1 + ((decay + growth(q)).max(0.0) / q).ceil().min(1e9) as usize;
             let tried = (1..=ELLIPSES).map(|k| points(most * f64::from(k) / f64::from(ELLIPSES)));

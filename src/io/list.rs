@@ -3,7 +3,7 @@
 
 use crate::base::error::{Error, Result};
 use crate::io::format::npy;
-use std::fs::{self, File};
+use crate::io::outputs::{Output, Outputs};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
@@ -28,30 +28,22 @@ impl ListFormat {
 /// A file under way.
 pub(crate) struct List {
     path: PathBuf,
-    partial: PathBuf,
-    file: BufWriter<File>,
+    file: BufWriter<Output>,
     format: ListFormat,
     channels: usize,
     values: u64,
 }
 
 impl List {
-    /// Begins a file under another name.
+    /// Begins a file, see [`Output`].
     ///
     /// # Errors
     /// When it cannot be written, or its name says no format.
     pub fn create(path: &Path, channels: &[String]) -> Result<Self> {
         let format = ListFormat::of(path)?;
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let partial = path.with_file_name(format!(".{name}.partial"));
-        if path.is_dir() {
-            return Err(Error::input(format!("{}: it is a folder; give a file", path.display())));
-        }
-        let file = File::create(&partial).map_err(Error::io("write", path))?;
         let mut list = Self {
             path: path.to_owned(),
-            partial,
-            file: BufWriter::new(file),
+            file: BufWriter::new(Output::create(path)?),
             format,
             channels: channels.len(),
             values: 0,
@@ -92,14 +84,16 @@ impl List {
     /// When it cannot be written.
     pub fn finish(mut self) -> Result<()> {
         let head = if self.format == ListFormat::Npy { self.npy_head()? } else { Vec::new() };
-        let settle = |file: &mut BufWriter<File>| -> io::Result<()> {
-            file.seek(SeekFrom::Start(0))?;
-            file.write_all(&head)?;
-            file.flush()?;
-            file.get_ref().sync_all()
+        let mut finish = || -> io::Result<()> {
+            self.file.seek(SeekFrom::Start(0))?;
+            self.file.write_all(&head)
         };
-        settle(&mut self.file).map_err(Error::io("write", &self.path))?;
-        fs::rename(&self.partial, &self.path).map_err(Error::io("write", &self.path))
+        finish().map_err(Error::io("write", &self.path))?;
+        let output =
+            self.file.into_inner().map_err(|error| Error::io("write", &self.path)(error.into_error()))?;
+        let mut outputs = Outputs::default();
+        outputs.take(output)?;
+        outputs.commit()
     }
 
     /// An NPY file up to its first value: 128 bytes, whatever the count.
@@ -110,11 +104,5 @@ impl List {
             128 => Ok(head),
             n => Err(Error::Internal(format!("an NPY header of {n} bytes"))),
         }
-    }
-}
-
-impl Drop for List {
-    fn drop(&mut self) {
-        let _ = fs::remove_file(&self.partial); // it is gone where it was finished
     }
 }

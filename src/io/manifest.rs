@@ -1,8 +1,8 @@
 //! The manifest as a file: reading it with suspicion, writing it to be read by people.
 
 use crate::base::error::{Error, Result};
+use crate::io::disk;
 use crate::io::format::FORMATS;
-use crate::io::set;
 use serde::Serialize;
 use serde_json::Value;
 use serde_json::ser::{Formatter, PrettyFormatter, Serializer};
@@ -14,40 +14,24 @@ use std::{fmt::Write as _, fs};
 /// The manifest of a finished set.
 pub(super) const MANIFEST: &str = "manifest.json";
 
-/// Reads the manifest of the set in `dir`, after finishing what a killed commit left (see
+/// Reads the manifest of the set in `dir`. The files that it lists are there, whole, whatever was killed (see
 /// [`TableSet`](crate::io::TableSet)).
 pub fn read_manifest(dir: &Path) -> Result<Value> {
-    set::recover(dir)?;
     let path = dir.join(MANIFEST);
     read(&path)?
         .ok_or_else(|| Error::input(format!("{}: not there; bake into this folder first", path.display())))
 }
 
-/// Compares the files of the set in `dir` with the hashes in its manifest. Returns the faults, one line
-/// each, naming the file; a whole set has none.
-pub fn verify(dir: &Path) -> Result<Vec<String>> {
-    let manifest = read_manifest(dir)?;
-    let mut faults = Vec::new();
-    for (name, sha256) in entries(&manifest) {
-        let path = dir.join(name);
-        let what = match fs::read(&path) {
-            _ if !is_plain(name) => "not a plain file name, so it is not ours".into(),
-            Ok(bytes) if hash(&bytes) == sha256 => continue,
-            Ok(_) => "differs from its SHA-256 in the manifest".into(),
-            Err(error) => format!("cannot be read: {error}"),
-        };
-        faults.push(format!("{}: {what}; bake again", path.display()));
-    }
-    Ok(faults)
-}
-
 /// The SHA-256 of a file, in hexadecimal.
 pub fn sha256(path: &Path) -> Result<String> {
-    let mut file = fs::File::open(path).map_err(Error::io("read", path))?;
-    let mut hasher = Sha256::new();
-    // Piece by piece: a scene may be larger than memory.
-    io::copy(&mut file, &mut hasher).map_err(Error::io("read", path))?;
-    Ok(hex(&hasher.finalize()))
+    hash_of(path).map_err(Error::io("read", path))
+}
+
+/// The SHA-256 of a file, read piece by piece.
+pub(super) fn hash_of(path: &Path) -> io::Result<String> {
+    let mut sha256 = Sha256::new();
+    io::copy(&mut fs::File::open(path)?, &mut sha256)?;
+    Ok(hex(&sha256.finalize()))
 }
 
 /// A file that a manifest lists, by its name and hash.
@@ -64,15 +48,21 @@ pub(super) fn listed(manifest: &Value) -> Vec<Listed> {
     plain.map(|(name, sha256)| Listed { name: name.into(), sha256: sha256.into() }).collect()
 }
 
+/// The number of files that a manifest lists.
+#[cfg(feature = "cli")]
+pub(crate) fn listed_files(manifest: &Value) -> usize {
+    entries(manifest).count()
+}
+
 /// Reads a manifest; `None` where there is no such file.
 ///
 /// # Errors
 /// When the file is not a manifest of gonio: it is then somebody else's, and stays.
 pub(super) fn read(path: &Path) -> Result<Option<Value>> {
-    let bytes = match fs::read(path) {
+    let bytes = match disk::read(path) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(Error::io("read", path)(error)),
+        Err(error) => return Err(disk::explain("read", path)(error)),
     };
     let foreign = |why: &str| {
         let path = path.display();
@@ -113,7 +103,7 @@ pub(super) fn hex(bytes: &[u8]) -> String {
 }
 
 /// Every (file, hash) of a manifest, whatever they are.
-fn entries(manifest: &Value) -> impl Iterator<Item = (&str, &str)> {
+pub(super) fn entries(manifest: &Value) -> impl Iterator<Item = (&str, &str)> {
     let tables = manifest.get("tables").and_then(Value::as_array).into_iter().flatten();
     let of_tables = tables.flat_map(|table| {
         let files = table.get("files").and_then(Value::as_object).into_iter().flatten();
@@ -130,8 +120,9 @@ fn entries(manifest: &Value) -> impl Iterator<Item = (&str, &str)> {
 /// What a set has besides tables.
 const OTHERS: [&str; 3] = ["svg", "html", "md"];
 
-/// Whether a name can only mean a file of a set inside the folder.
-fn is_plain(name: &str) -> bool {
+/// Whether a name can only mean a file of a set inside the folder, or in its folder of files.
+pub(super) fn is_plain(name: &str) -> bool {
+    let name = name.strip_prefix("files/").unwrap_or(name);
     let path = Path::new(name);
     let one = matches!(path.components().next(), Some(Component::Normal(part)) if part == name);
     let extension = path.extension().and_then(|extension| extension.to_str());

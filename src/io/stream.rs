@@ -5,8 +5,8 @@
 
 use crate::base::error::{Error, Result};
 use crate::io::Provenance;
+use crate::io::disk::explain;
 use crate::io::format::BeginRows;
-use crate::io::set::explain;
 use crate::table::Table;
 use sha2::{Digest, Sha256};
 use std::fs::{self, File};
@@ -34,7 +34,7 @@ impl Tiles {
         (Sha256::digest(values)[..] == *hash).then(|| floats(values))
     }
 
-    /// Whether a tile seems to be there.
+    /// Whether a tile seems to be there. One that cannot be looked at is computed again.
     pub fn has(&self, k: usize) -> bool {
         self.path(k).exists()
     }
@@ -49,15 +49,22 @@ impl Tiles {
 
     /// Tile after tile, to the first that is not there.
     fn each(&self) -> impl Iterator<Item = Result<Vec<f32>>> {
-        (0..).map(|k| self.path(k)).take_while(|path| path.exists()).map(|path| {
-            let bytes = fs::read(&path).map_err(explain("read", &path))?;
-            Ok(floats(&bytes[..bytes.len().saturating_sub(HASH)]))
-        })
+        let read = |path: PathBuf| match fs::read(&path) {
+            Ok(bytes) => Some(Ok(floats(&bytes[..bytes.len().saturating_sub(HASH)]))),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+            Err(error) => Some(Err(explain("read", &path)(error))),
+        };
+        (0..).map(|k| self.path(k)).map_while(read)
     }
 
     fn path(&self, k: usize) -> PathBuf {
         self.dir.join(format!("{k:06}.tile"))
     }
+}
+
+/// Whether a tile's file has this name.
+pub(super) fn is_tile(name: &str) -> bool {
+    name.strip_suffix(".tile").is_some_and(|k| k.len() >= 6 && k.bytes().all(|b| b.is_ascii_digit()))
 }
 
 fn floats(bytes: &[u8]) -> Vec<f32> {

@@ -64,7 +64,8 @@ impl Order<'_> {
         }
         let mut hashes = Map::new();
         for (name, bytes) in *files {
-            hashes.insert((*name).into(), set.add(name, bytes)?.into());
+            let (name, sha256) = set.add(name, bytes)?;
+            hashes.insert(name, sha256.into());
         }
         let manifest = json!({
             "schema": 1, "kind": "light", "gonio": { "version": env!("CARGO_PKG_VERSION") },

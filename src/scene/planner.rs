@@ -17,6 +17,7 @@ use crate::table::axis::{Axis, Mapping, Positions, Variable};
 use crate::table::quantity;
 use crate::table::quantity::{BRDF, Quantity, RHO_DH};
 use crate::table::rule::Rule;
+use crate::table::storage::Storage;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::f64::consts::FRAC_PI_2;
@@ -107,6 +108,8 @@ pub struct Selection {
 /// Why a model that the scene does not use is left out.
 pub const UNUSED: &str = "nothing in the scene uses it";
 
+/// Twice the rounding of half floats, rounded up.
+const HALF_TOLERANCE: f64 = 1e-3;
 /// Resolution of the default tables.
 const ROUGHNESS: usize = 32;
 const MU: usize = 64;
@@ -124,7 +127,8 @@ impl Plan {
     /// When the selection names what is not there, or a requested table cannot be baked.
     pub fn new(scene: &Scene, selection: &Selection) -> Result<Self> {
         let quantity = selection.quantity.as_deref().map(quantity::find).transpose()?;
-        let tolerance = selection.tolerance.or(scene.tolerance).unwrap_or(Tolerance::DEFAULT.get());
+        let asked = selection.tolerance.or(scene.tolerance);
+        let tolerance = asked.unwrap_or(Tolerance::DEFAULT.get());
         let materials: Vec<_> = match &selection.material {
             Some(name) => vec![scene.material(name)?],
             None => scene.materials.iter().collect(),
@@ -160,7 +164,7 @@ impl Plan {
                 };
                 if wanted {
                     let mut table =
-                        requested(request, scene, &by_name, tolerance).map_err(|e| e.at(&request.place))?;
+                        requested(request, scene, &by_name, asked).map_err(|e| e.at(&request.place))?;
                     if request.name.is_none() {
                         let name = names.take(table.name());
                         table = table.with_name(name);
@@ -481,12 +485,17 @@ impl FreeNames {
     }
 }
 
+/// The tolerance of a table for which none is asked: half floats round by more than what others get.
+fn default_tolerance(storage: Option<Storage>) -> f64 {
+    if storage == Some(Storage::F16) { HALF_TOLERANCE } else { Tolerance::DEFAULT.get() }
+}
+
 /// A table that a recipe asks for.
 fn requested(
     request: &TableRequest,
     scene: &Scene,
     by_name: &HashMap<&str, &Material>,
-    tolerance: f64,
+    tolerance: Option<f64>,
 ) -> Result<TablePlan> {
     let material = |name: &str| by_name.get(name).copied().map_or_else(|| scene.material(name), Ok);
     let quantity = quantity::find(&request.quantity)?;
@@ -513,7 +522,8 @@ fn requested(
         SubjectRequest::Material(subject) => table_of(name(subject), quantity, material(subject)?, axes)?,
     };
     let table = table.with_rule(request.rule.unwrap_or(Rule::Warped))?;
-    let table = table.with_tolerance(request.tolerance.unwrap_or(tolerance))?;
+    let tolerance = request.tolerance.or(tolerance);
+    let table = table.with_tolerance(tolerance.unwrap_or_else(|| default_tolerance(request.storage)))?;
     if request.auto.is_empty() {
         return table.with_storage(request.storage.unwrap_or_default());
     }

@@ -29,6 +29,8 @@ mod layers;
 mod light;
 mod mirror_limit;
 mod ndfs;
+#[cfg(feature = "cli")]
+mod outputs;
 mod parts;
 mod plans;
 #[cfg(feature = "cli")]

@@ -104,7 +104,8 @@ fn a_lost_device_is_no_panic() {
 
 fn plans() -> Vec<TablePlan> {
     let axis = |variable, n| Axis::natural(variable, n).unwrap();
-    let angles = || vec![axis(Variable::ThetaI, 33), axis(Variable::ThetaE, 65), axis(Variable::DeltaPhi, 129)];
+    let angles =
+        || vec![axis(Variable::ThetaI, 33), axis(Variable::ThetaE, 65), axis(Variable::DeltaPhi, 129)];
     vec![
         TablePlan::basis(
             "dfg",
@@ -115,7 +116,8 @@ fn plans() -> Vec<TablePlan> {
         )
         .unwrap(),
         TablePlan::basis("values", &BRDF, model("ggx"), Some(0.3), angles()).unwrap(),
-        TablePlan::basis("smooth", &RHO_DH, model("burley"), Some(0.5), vec![axis(Variable::ThetaI, 64)]).unwrap(),
+        TablePlan::basis("smooth", &RHO_DH, model("burley"), Some(0.5), vec![axis(Variable::ThetaI, 64)])
+            .unwrap(),
     ]
 }
 

@@ -223,3 +223,24 @@ storage = \"f16\"",
     let why = refusal("{ mu = \"auto\", roughness = \"auto\" }", "tolerance = 1e-9");
     assert!(why.contains("up to 512"), "{why}");
 }
+
+/// Half floats round by more than the usual tolerance: asked for without one, they get a tolerance that they can meet.
+#[test]
+fn half_floats_have_a_tolerance_of_their_own() {
+    let dir = tempfile::tempdir().unwrap();
+    let recipe = dir.path().join("r.toml");
+    for (more, tolerance) in
+        [("storage = 'f16'", 1e-3), ("", 1e-4), ("storage = 'f16'\ntolerance = 1e-4", 1e-4)]
+    {
+        let axes = "axes = { mu = 8, roughness = 8 }";
+        std::fs::write(
+            &recipe,
+            format!("[[tables]]\nmodel = 'ggx'\nquantity = 'split_sum'\n{axes}\n{more}\n"),
+        )
+        .unwrap();
+        let plan =
+            gonio::scene::planner::Plan::new(&gonio::scene::read(&recipe).unwrap(), &Default::default())
+                .unwrap();
+        assert_eq!(plan.tables[0].tolerance(), tolerance, "{more}");
+    }
+}

@@ -385,8 +385,7 @@ impl Baker {
                 let offset = (phi_i * windows + window) as u64 * BYTES;
                 let size = std::num::NonZeroU64::new(BYTES);
                 let binding = wgpu::BufferBinding { buffer: quads, offset, size };
-                let rows_per_step =
-                    (EVALUATIONS_PER_DISPATCH / (columns * stage.cost)).clamp(1, most_rows);
+                let rows_per_step = (EVALUATIONS_PER_DISPATCH / (columns * stage.cost)).clamp(1, most_rows);
                 for row in (first..end).step_by(rows_per_step) {
                     let rows_here = rows_per_step.min(end - row);
                     let job = KernelJob {

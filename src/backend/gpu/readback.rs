@@ -85,7 +85,8 @@ impl Device {
         let start = Stopwatch::start();
         let composed = self.baker.compose_seconds();
         let dispatches = self.baker.dispatches(table, layout.precision, || self.known_turns())?;
-        let tiles = tiles.map_or_else(|| layout.tiles(&dispatches, &self.baker.device.limits()), <[_]>::to_vec);
+        let tiles =
+            tiles.map_or_else(|| layout.tiles(&dispatches, &self.baker.device.limits()), <[_]>::to_vec);
         let largest = layout.bytes(tiles.iter().map(Range::len).max().unwrap_or(0));
         let mut slots: Vec<_> = tiles.iter().take(2).map(|_| self.slot(largest)).collect();
         timings.compile += start.seconds();

@@ -4,7 +4,7 @@
 use crate::base::angles::Angles;
 use crate::base::error::Result;
 use crate::io::format::PNG;
-use crate::io::{Provenance, write_together};
+use crate::io::{Outputs, Provenance};
 use crate::table::axis::{Axis, Variable};
 use crate::table::quantity::{BRDF, Quantity, RHO_DH};
 use crate::table::storage::Storage;
@@ -26,17 +26,24 @@ static DEVIATION: Quantity =
         name: "error", unit: "1", summary: "|f − reference| / reference", is_promised: false, ..BRDF
     };
 
-/// Writes `STEM.rho_dh.png`, and `STEM.error.png` if the subject has values; returns their paths.
-pub fn write(dir: &Path, stem: &str, subject: &mut dyn Subject, report: &Report) -> Result<Vec<PathBuf>> {
+/// Stages `STEM.rho_dh.png`, and `STEM.error.png` if the subject has values; returns their paths.
+pub fn write(
+    dir: &Path,
+    stem: &str,
+    subject: &mut dyn Subject,
+    report: &Report,
+    outputs: &mut Outputs,
+) -> Result<Vec<PathBuf>> {
     let tables = [furnace(subject, report)?, errors(subject, report)?];
     let mut files = Vec::new();
     for (table, what) in tables.into_iter().zip(["rho_dh", "error"]) {
         if let Some(table) = table {
-            files.push((format!("{stem}.{what}.png"), PNG.encode(&table, &Provenance::new())?));
+            let path = dir.join(format!("{stem}.{what}.png"));
+            outputs.add(&path, PNG.encode(&table, &Provenance::new())?)?;
+            files.push(path);
         }
     }
-    write_together(dir, &files)?;
-    Ok(files.into_iter().map(|(name, _)| dir.join(name)).collect())
+    Ok(files)
 }
 
 /// Tabulates ρ_dh over θi, a line for each of `LINES` values of the first parameter that has a range, with the

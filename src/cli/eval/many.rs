@@ -8,7 +8,7 @@ use crate::base::error::{Error, Result};
 use crate::base::timings::Stopwatch;
 use crate::cli::eval::{Args, is_sane, subject};
 use crate::cli::watch::Watch;
-use crate::cli::{HEADING, print, print_json};
+use crate::cli::{HEADING, open, print, print_json};
 use crate::io::{List, Pairs};
 use serde_json::json;
 use std::path::Path;
@@ -29,8 +29,8 @@ pub fn run(args: &Args, pairs: &Path, out: &Path) -> Result<()> {
         )));
     }
     let mut values_file = List::create(out, plan.channels())?;
-    let (evaluator, line) = Evaluator::choose(&args.device)?;
-    let mut points = Points::new(&evaluator, plan.lobes())?;
+    let (evaluator, line) = open(&args.device)?;
+    let mut points = Points::new(evaluator, plan.lobes())?;
 
     let watch = Watch::new(1);
     watch.begin(&format!("evaluating {}", plan.subject()));

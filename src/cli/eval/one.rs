@@ -8,7 +8,7 @@ use crate::base::half_angle::MU_MIN;
 use crate::check;
 use crate::check::{ReferenceLobe, VALUE_FLOOR, reference_angles};
 use crate::cli::eval::{Args, is_sane, subject};
-use crate::cli::{HEADING, print, print_json};
+use crate::cli::{HEADING, open, print, print_json};
 use crate::model::lobe::Lobe;
 use crate::plan::TablePlan;
 use serde::Serialize;
@@ -31,9 +31,9 @@ struct LobeFactors {
 pub fn run(args: &Args, angles: &Angles) -> Result<()> {
     let plan = subject(args, angles)?;
     angles.check()?;
-    let (evaluator, line) = Evaluator::choose(&args.device)?;
+    let (evaluator, line) = open(&args.device)?;
     let mut value = Vec::new();
-    Points::new(&evaluator, plan.lobes())?.evaluate(&[*angles], &mut value)?;
+    Points::new(evaluator, plan.lobes())?.evaluate(&[*angles], &mut value)?;
     let reference = check::reference(&plan, 0);
     let difference = relative_difference(&value, &reference);
     let factors: Vec<_> = plan.lobes().iter().filter_map(|lobe| factors(lobe, angles)).collect();

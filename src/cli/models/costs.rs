@@ -1,10 +1,10 @@
 //! `gonio models --costs`
 
 use crate::backend::gpu::DeviceChoice;
-use crate::bake::{Evaluator, Observer};
+use crate::bake::Observer;
 use crate::base::error::{Error, Result};
 use crate::cli::watch::Watch;
-use crate::cli::{HEADING, device_json, print_beside, print_json};
+use crate::cli::{HEADING, device_json, open, print_beside, print_json};
 use crate::lab::trade::{Cost, costs};
 use crate::model::Model;
 use serde_json::json;
@@ -16,7 +16,7 @@ pub(super) fn run(
     device: &DeviceChoice,
     json: bool,
 ) -> Result<()> {
-    let (evaluator, name) = Evaluator::choose(device)?;
+    let (evaluator, name) = open(device)?;
     let say = |text: &str| print_beside(json, text);
     say(&format!("{HEADING}device{HEADING:#}  {name}"))?;
     say("for each tolerance: evaluations of the integrand for a texel, arithmetic, largest error")?;
@@ -27,7 +27,7 @@ pub(super) fn run(
     let mut all = Vec::new();
     for model in models {
         watch.begin(model.name);
-        let measured = costs(&evaluator, model, tolerances, &watch)?;
+        let measured = costs(evaluator, model, tolerances, &watch)?;
         for quantity in measured.chunks(tolerances.len()) {
             watch.hide(|| say(&line(quantity)))?;
         }
@@ -35,7 +35,7 @@ pub(super) fn run(
     }
     watch.finish();
     if json {
-        print_json(&json!({ "device": device_json(&evaluator), "costs": all }))?;
+        print_json(&json!({ "device": device_json(evaluator), "costs": all }))?;
     }
     let missed: Vec<_> = all.iter().filter(|cost| !cost.is_met()).collect();
     match missed[..] {

@@ -1,6 +1,7 @@
 //! A drawing as an SVG file: text stays text, and images are PNG files within it.
 
 use crate::base::error::Result;
+use crate::base::words::printable;
 use crate::io::draw::canvas::{Align, BASELINE, Canvas, Color, EM, Mark, Rect};
 use crate::io::draw::raster;
 use std::fmt::Write;
@@ -90,15 +91,14 @@ fn hex([r, g, b]: Color) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// Text as XML and HTML have it, also within quotes. What XML cannot hold at all is left out.
+/// Text as XML and HTML have it, also within quotes.
 pub(crate) fn escape(text: &str) -> String {
-    text.chars().fold(String::new(), |mut escaped, c| {
+    printable(text).chars().fold(String::new(), |mut escaped, c| {
         match c {
             '&' => escaped += "&amp;",
             '<' => escaped += "&lt;",
             '>' => escaped += "&gt;",
             '"' => escaped += "&quot;",
-            c if c.is_control() => {}
             c => escaped.push(c),
         }
         escaped

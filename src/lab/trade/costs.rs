@@ -97,8 +97,6 @@ fn plan(model: &'static Model, quantity: &'static Quantity) -> Result<TablePlan>
         Variable::ThetaI => Axis::listed(variable, THETAS.to_vec()),
         _ => Axis::natural(variable, 3),
     };
-    let rough = model.shape.map(|_| Variable::Roughness);
-    let variables = rough.into_iter().chain(quantity.variables(model.is_anisotropic()).iter().copied());
-    let axes = variables.map(listed).collect::<Result<_>>()?;
+    let axes = model.variables(quantity).map(listed).collect::<Result<_>>()?;
     TablePlan::basis(model.name, quantity, model, None, axes)
 }

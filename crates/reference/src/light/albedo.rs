@@ -80,7 +80,11 @@ fn in_parallel<T: Copy + Default + Send>(f: impl Fn(usize) -> T + Sync) -> [T; P
         }
     };
     let threads = thread::available_parallelism().map_or(1, usize::from).min(POINTS);
-    thread::scope(|scope| (0..threads).for_each(|_| drop(scope.spawn(work))));
+    thread::scope(|scope| {
+        // Where the system gives no more threads, fewer do the work: this one at least.
+        (1..threads).for_each(|_| drop(thread::Builder::new().spawn_scoped(scope, work)));
+        work();
+    });
     found.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
