@@ -179,24 +179,6 @@ impl Baker {
         Ok(prepared.recorded)
     }
 
-    /// Calls `use_device`, and returns an error of the device that it caused as [`Error::Device`]. The owner's error handlers
-    /// stay as they are, and hear nothing of it.
-    pub(crate) fn scoped<T>(&self, use_device: impl FnOnce() -> Result<T>) -> Result<T> {
-        let filters =
-            [wgpu::ErrorFilter::Validation, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Internal];
-        let scopes = filters.map(|filter| self.device.push_error_scope(filter));
-        let result = use_device();
-        let mut fault = None;
-        // The last one first, as they are nested.
-        for scope in scopes.into_iter().rev() {
-            fault = pollster::block_on(scope.pop()).or(fault);
-        }
-        match fault {
-            Some(fault) => Err(Error::Device(format!("{}: {fault}", self.device.adapter_info().name))),
-            None => result,
-        }
-    }
-
     /// The most workgroups that the device dispatches along a dimension.
     pub(crate) fn max_workgroups(&self) -> usize {
         self.device.limits().max_compute_workgroups_per_dimension.max(1) as usize

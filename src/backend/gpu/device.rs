@@ -274,6 +274,26 @@ impl Device {
     }
 }
 
+impl Baker {
+    /// Calls `use_device`, and returns an error of the device that it caused as [`Error::Device`]. The owner's error handlers
+    /// stay as they are, and hear nothing of it.
+    pub(crate) fn scoped<T>(&self, use_device: impl FnOnce() -> Result<T>) -> Result<T> {
+        let filters =
+            [wgpu::ErrorFilter::Validation, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Internal];
+        let scopes = filters.map(|filter| self.device.push_error_scope(filter));
+        let result = use_device();
+        let mut fault = None;
+        // The last one first, as they are nested.
+        for scope in scopes.into_iter().rev() {
+            fault = pollster::block_on(scope.pop()).or(fault);
+        }
+        match fault {
+            Some(fault) => Err(Error::Device(format!("{}: {fault}", self.device.adapter_info().name))),
+            None => result,
+        }
+    }
+}
+
 /// The remedy where there is no device: how to install a software one.
 pub const INSTALL: &str = "Install a Vulkan driver; on Debian, software Vulkan is `apt-get install \
                            mesa-vulkan-drivers libvulkan1`.";
