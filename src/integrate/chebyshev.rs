@@ -263,7 +263,7 @@ mod tests {
         ]
     }
 
-    const RANDOM_TABLES: usize = 200;
+    const RANDOM_TABLES: usize = 60;
 
     fn slopes(model: &Model) -> Option<&'static Slopes> {
         match model.integral {
