@@ -126,7 +126,8 @@ impl CsvLines {
             self.line += 1;
             let place = |error: Error| error.at(format!("{}: line {}", path.display(), self.line));
             if self.bytes.len() as u64 == LONGEST {
-                let why = format!("it has {LONGEST} bytes or more, and four numbers have fewer; break the line");
+                let why =
+                    format!("it has {LONGEST} bytes or more, and four numbers have fewer; break the line");
                 return Err(place(Error::input(why)));
             }
             let text = str::from_utf8(&self.bytes).map_err(|_| place(Error::input("it is not UTF-8")))?;

@@ -202,7 +202,7 @@ fn faint_maps() -> Vec<Environment> {
     suns.into_iter().chain(halves).chain(rings).flat_map(|map| [map.clone(), map.rotated(0.3)]).collect()
 }
 
-/// E is not negative, and `estimate` bounds its true error, on both paths. Stored values are rounded to f32 beside.
+/// E is not negative, and `estimate` bounds its true error, on both paths.
 #[test]
 fn faint_irradiance_is_within_its_estimate() {
     for map in faint_maps() {
@@ -212,7 +212,7 @@ fn faint_irradiance_is_within_its_estimate() {
             let table = order.irradiance(grid(9, 10), &mut Timings::default()).unwrap();
             assert_within(&order, &table);
             let (estimate, measured) = (table.error.estimate.unwrap(), table.error.measured_max.unwrap());
-            assert!(measured <= estimate + 6e-8, "{}: {:?}", table.precision, table.error);
+            assert!(measured <= estimate, "{}: {:?}", table.precision, table.error);
         }
     }
 }
@@ -221,7 +221,7 @@ fn faint_irradiance_is_within_its_estimate() {
 #[test]
 fn faint_light_is_never_sent_back_below_zero() {
     let one = scene("model = \"ggx\", roughness = 0.5, f0 = [0.9, 0.5, 0.04]");
-    for map in faint_maps().into_iter().step_by(5) {
+    for map in faint_maps().into_iter().step_by(11) {
         let light = Light::Map(map);
         for evaluator in evaluators() {
             let order = Order { tolerance: 1e-2, ..order(evaluator, &light, Check::Sample(0)) };
@@ -602,7 +602,9 @@ fn the_split_sum_is_exact_where_it_should_be() {
 fn light_is_filtered_with_the_weight_of_engines() {
     let ring = (0..64 * 32).map(|k| [if k / 64 == 5 { 3.0 } else { 0.0 }; 3]).collect();
     let light = Light::Map(Environment::new(64, 32, ring).unwrap());
-    for (roughness, terms) in [(0.5, ""), (0.7, ", masking = \"none\""), (0.6, ", fresnel = \"dielectric\", eta = 1.5")] {
+    for (roughness, terms) in
+        [(0.5, ""), (0.7, ", masking = \"none\""), (0.6, ", fresnel = \"dielectric\", eta = 1.5")]
+    {
         let alpha = roughness * roughness;
         let weight = |theta: f64| {
             let cos2 = (0.5 * theta).cos().powi(2);
@@ -752,6 +754,7 @@ fn the_command_bakes_a_set() {
     assert_eq!(code, 0, "{stderr}");
     assert!(stdout.contains("radiance_split_sum"), "{stdout}");
 
+    let radiance = ["light", "lambert", "--set", "albedo=1", "--sky", "constant:1", "--quantity", "radiance"];
     for (args, code, what) in [
         (vec!["light", "--out", out_name], 2, "--env"),
         (vec!["light", "--sky", "moon", "--out", out_name], 2, "no light"),
@@ -766,11 +769,7 @@ fn the_command_bakes_a_set() {
             2,
             "65536 theta_n × 65536 phi_n",
         ),
-        (
-            vec!["light", "lambert", "--sky", "constant:1", "--quantity", "radiance", "--exits", "4096x4096", "--out", out_name],
-            2,
-            "4096 theta_e",
-        ),
+        ([&radiance[..], &["--exits", "4096x4096", "--out", out_name]].concat(), 2, "4096 theta_e"),
     ] {
         let (got, _, stderr) = gonio(&args);
         assert!(got == code && stderr.contains(what), "{args:?}: {got} {stderr}");

@@ -4,7 +4,9 @@ use crate::bake::Evaluator;
 use crate::base::error::Result;
 use crate::base::timings::Stopwatch;
 use crate::base::timings::Timings;
-use crate::light::bake::{FLOOR, Order, RgbValues, Truths, check_size, largest, normals, reference_frames, timed};
+use crate::light::bake::{
+    FLOOR, Order, RgbValues, Truths, check_size, largest, normals, reference_frames, timed,
+};
 use crate::light::irradiance::{PreparedMap, in_closed_form};
 use crate::light::{Environment, Light};
 use crate::table::Table;
@@ -12,6 +14,8 @@ use crate::table::axis::Axis;
 use crate::table::quantity::IRRADIANCE;
 use gonio_reference::light as reference;
 
+/// What storage as f32 rounds by.
+const STORED: f64 = 0.5 / (1 << 23) as f64;
 /// Pieces of a column that the horizon crosses, at most.
 const FINEST_SPLIT: u32 = 16;
 
@@ -111,7 +115,7 @@ impl Order<'_> {
                 };
                 rgb.iter().zip(&finer).map(of_texel).fold(0.0, f64::max)
             };
-            let (apart, estimate) = (worst([0.0; 3]), worst(roundings));
+            let (apart, estimate) = (worst([0.0; 3]), worst(roundings) + STORED);
             (split, rgb) = (2 * split, finer);
             if apart <= 0.5 * self.tolerance || split >= FINEST_SPLIT {
                 return Ok(Refined { rgb, estimate, split });
@@ -142,7 +146,7 @@ fn closed(light: &Light, normals: &[[f64; 3]]) -> RgbValues {
         rule: "closed form".into(),
         precision: "f64",
         // Roundings of products and of an arc cosine.
-        estimate: Some(1e-12),
+        estimate: Some(1e-12 + STORED),
         seconds: start.seconds(),
     }
 }

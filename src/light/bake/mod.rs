@@ -153,7 +153,8 @@ fn check_size(axes: &[Axis], settings: usize) -> Result<()> {
     if texels.is_some_and(|texels| texels <= MAX_TABLE) {
         return Ok(());
     }
-    let words: Vec<_> = axes.iter().map(|axis| format!("{} {}", axis.len(), axis.variable().name())).collect();
+    let words: Vec<_> =
+        axes.iter().map(|axis| format!("{} {}", axis.len(), axis.variable().name())).collect();
     Err(Error::input(format!(
         "{} make a table of more than the {MAX_TABLE} texels that a light fills; take fewer",
         words.join(" × ")

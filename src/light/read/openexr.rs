@@ -81,7 +81,9 @@ pub(super) fn read(file: impl Read + Seek) -> Result<Picture> {
 fn explain(fault: Fault) -> Error {
     Error::input(match fault {
         Fault::NotSupported(what) => {
-            format!("OpenEXR of a kind that is not read: {what}; write the map as scanlines with ZIP compression")
+            format!(
+                "OpenEXR of a kind that is not read: {what}; write the map as scanlines with ZIP compression"
+            )
         }
         Fault::Io(why) => why.to_string(),
         Fault::Invalid(why) => format!("not a whole OpenEXR file ({why}); write the map again"),
@@ -210,7 +212,10 @@ fn picture(headers: &[Header]) -> Result<Layer> {
                 (true, n) => format!("{n} layers with R, G and B"),
                 (false, n) => format!("{n} layers with a luminance Y"),
             };
-            Err(Error::input(format!("it has {what}; write the one that is the map alone; {}", listed(headers))))
+            Err(Error::input(format!(
+                "it has {what}; write the one that is the map alone; {}",
+                listed(headers)
+            )))
         }
     }
 }
@@ -241,7 +246,10 @@ fn listed(headers: &[Header]) -> String {
     let of_part = |header: &Header| {
         let part = header.own_attributes.layer_name.as_ref().filter(|_| headers.len() > 1);
         let part = part.map_or(String::new(), |name| format!("{name}: "));
-        names(header).into_iter().map(move |name| format!("{part}{name}").escape_debug().to_string()).collect::<Vec<_>>()
+        names(header)
+            .into_iter()
+            .map(move |name| format!("{part}{name}").escape_debug().to_string())
+            .collect::<Vec<_>>()
     };
     let all: Vec<_> = headers.iter().flat_map(of_part).collect();
     let more = if all.len() > NAMED { format!(" and {} more", all.len() - NAMED) } else { String::new() };

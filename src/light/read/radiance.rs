@@ -62,7 +62,9 @@ impl Header {
             let mut line = Vec::new();
             head.read_until(b'\n', &mut line).map_err(|why| Error::input(why.to_string()))?;
             if line.pop() != Some(b'\n') {
-                return Err(Error::input("not a whole Radiance HDR file: its header does not end; write the map again"));
+                return Err(Error::input(
+                    "not a whole Radiance HDR file: its header does not end; write the map again",
+                ));
             }
             Ok(String::from_utf8_lossy(&line).trim_end().to_owned())
         };
@@ -109,14 +111,10 @@ fn numbers<const N: usize>(value: &str) -> Option<[f64; N]> {
     numbers.try_into().ok().filter(|numbers: &[f64; N]| numbers.iter().all(is_scale))
 }
 
-fn divide(
-    scale: &mut [f64; 3],
-    line: &str,
-    by: Option<[f64; 3]>,
-    notes: &mut Vec<String>,
-) -> Result<()> {
+fn divide(scale: &mut [f64; 3], line: &str, by: Option<[f64; 3]>, notes: &mut Vec<String>) -> Result<()> {
     let line = line.escape_debug();
-    let by = by.ok_or_else(|| Error::input(format!("its header says \"{line}\"; give finite numbers from 0 up")))?;
+    let by =
+        by.ok_or_else(|| Error::input(format!("its header says \"{line}\"; give finite numbers from 0 up")))?;
     if by.contains(&0.0) {
         notes.push(format!("its header says \"{line}\", where 0 counts as 1"));
     }
