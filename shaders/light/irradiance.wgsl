@@ -28,10 +28,10 @@ struct Row {
 struct Normal {
     n: vec3f,
     sin: f32,
-    place: f32,    // its azimuth, in columns
+    column: f32,   // its azimuth: a column,
+    fraction: f32, // and from there to the next
     pad0: f32,
     pad1: f32,
-    pad2: f32,
 }
 
 /// Σ L ∫(cos ψ, sin ψ, 1) dψ, R, G and B each.
@@ -74,29 +74,32 @@ fn of_row(n: Normal, row: u32) -> vec3f {
     let b = reach(n, at.edges.zw);
     let inner = min(a, b);
     let outer = max(a, b);
-    // Columns first..last are above. The others have at most one piece each side of the normal's azimuth.
+    // Columns first..last, from that of the normal, are above. The others have at most one piece each side of its azimuth.
     let sure = max(inner - job.margin, 0.0);
-    let first = i32(ceil(n.place - sure));
-    let last = i32(floor(n.place + sure));
-    let begin = i32(floor(n.place - outer - job.margin));
-    let end = i32(ceil(n.place + outer + job.margin));
+    let first = i32(ceil(n.fraction - sure));
+    let last = i32(floor(n.fraction + sure));
+    let begin = i32(floor(n.fraction - outer - job.margin));
+    let end = i32(ceil(n.fraction + outer + job.margin));
+    let own = i32(n.column);
 
+    // Integrals of what is not negative: roundings below 0 are taken as 0.
     var sum = vec3f();
     if job.skip == 0u {
-        let start = wrap(first);
+        let start = wrap(own + first);
         let count = u32(max(last - first, 0));
         let before_the_edge = min(count, job.width - start);
         let s = run(row, start, start + before_the_edge);
         let t = run(row, 0u, count - before_the_edge);
-        sum = at.across * (n.n.x * (s.x + t.x) + n.n.y * (s.y + t.y)) + n.n.z * at.along * (s.z + t.z);
+        let whole = at.across * (n.n.x * (s.x + t.x) + n.n.y * (s.y + t.y)) + n.n.z * at.along * (s.z + t.z);
+        sum = max(whole, vec3f());
     }
     let left = u32(first - begin);
     let stop = min(left + u32(end - last), job.skip + job.most);
     for (var t = job.skip; t < stop; t++) {
         let is_left = t < left;
         let k = select(last + i32(t - left), begin + i32(t), is_left);
-        let side = select(1.0, -1.0, is_left);
-        let column = wrap(k);
+        let side = select(1, -1, is_left);
+        let column = wrap(own + k);
         sum += texel(row, column) * crossed(n, at, k, columns[column].xy, side, inner, outer);
     }
     return sum;
@@ -113,10 +116,12 @@ fn reach(n: Normal, edge: vec2f) -> f32 {
     return arc_cosine(x) / job.step;
 }
 
-/// Abramowitz & Stegun 1964, 4.4.45: to 7e-5 rad, which the margin covers.
+/// Abramowitz & Stegun 1964, 4.4.46: to 2e-8 rad, and 4e-4 where x near 1 is rounded, which the margin covers.
 fn arc_cosine(x: f32) -> f32 {
     let a = abs(x);
-    let p = sqrt(1.0 - a) * (1.5707288 + a * (-0.2121144 + a * (0.074261 - 0.0187293 * a)));
+    let low = 1.5707963 + a * (-0.2145988 + a * (0.08897899 + a * -0.0501743));
+    let high = 0.030891881 + a * (-0.017088126 + a * (0.00667009 + a * -0.0012624911));
+    let p = sqrt(1.0 - a) * (low + a * a * a * a * high);
     return select(p, PI - p, x < 0.0);
 }
 
@@ -155,22 +160,30 @@ fn kept(row: u32, a: u32, b: u32, axis: u32) -> vec3f {
 }
 
 /// ∫ max(0, n·ω) dω over a cell, of what is on one side of the normal's azimuth: up to `inner` the row is above, up to
-/// `outer` crossed. Offsets are columns from that azimuth.
-fn crossed(n: Normal, at: Row, k: i32, psi: vec2f, side: f32, inner: f32, outer: f32) -> f32 {
-    // Of the column's middle, from the azimuth, away from it.
-    let middle = side * (f32(k) + 0.5 - n.place);
-    let turn = 0.5 * f32(job.width);
-    let ends = clamp(clamp(vec3f(0.0, inner, outer), vec3f(middle - 0.5), vec3f(middle + 0.5)), vec3f(), vec3f(turn));
-    let full = 0.5 * vec2f(ends.y + ends.x, ends.y - ends.x);
-    let b = across(n, psi, side * job.step * (full.x - middle), NODE * job.step * full.y);
-    var sum = full.y * (2.0 * n.n.z * at.along + (b.x + b.y) * at.across);
-    let half = 0.5 * (ends.z - ends.y) / f32(job.split);
+/// `outer` crossed. These are columns from that azimuth; offsets are columns from the cell's middle, away from it.
+fn crossed(n: Normal, at: Row, k: i32, psi: vec2f, side: i32, inner: f32, outer: f32) -> f32 {
+    let towards = f32(side);
+    let middle = towards * (f32(k) + (0.5 - n.fraction));
+    // Half a turn away, in whole numbers first, so that it keeps its digits.
+    let turn = 0.5 * f32(i32(job.width) - 2 * side * k) - towards * (0.5 - n.fraction);
+    let ends = clamp(vec2f(-middle, turn), vec2f(-0.5), vec2f(0.5));
+    let reach = clamp(vec2f(inner, outer) - middle, ends.xx, ends.yy);
+    return job.step * (part(n, at, psi, towards, ends.x, reach.x) + part(n, at, psi, towards, reach.x, reach.y));
+}
+
+/// The same between two offsets, in pieces.
+fn part(n: Normal, at: Row, psi: vec2f, side: f32, low: f32, high: f32) -> f32 {
+    var sum = 0.0;
+    if low >= high {
+        return sum;
+    }
+    let half = 0.5 * (high - low) / f32(job.split);
     for (var j = 0u; j < job.split; j++) {
-        let centre = ends.y + half * f32(2u * j + 1u);
-        let b = across(n, psi, side * job.step * (centre - middle), NODE * job.step * half);
+        let centre = low + half * f32(2u * j + 1u);
+        let b = across(n, psi, side * job.step * centre, NODE * job.step * half);
         sum += half * (meridian(n.n.z, b.x, at.middle) + meridian(n.n.z, b.y, at.middle));
     }
-    return job.step * sum;
+    return sum;
 }
 
 /// B of two meridians, `by` from the one at (cos ψ, sin ψ) and as far as `apart` beyond and before that.
@@ -185,11 +198,13 @@ fn meridian(z: f32, b: f32, theta: vec2f) -> f32 {
     let q = height * height;
     let horizon = clamp(height * (1.0 + q * (1.0 / 6.0 + q * 0.075)), -job.half, job.half);
     let ends = select(vec2f(-horizon, job.half), vec2f(-job.half, horizon), z >= 0.0);
-    let middle = 0.5 * (ends.x + ends.y);
-    let half = 0.5 * (ends.y - ends.x);
-    let t = turned(theta, middle - NODE * half);
-    let u = turned(theta, middle + NODE * half);
-    return half * ((z * t.x + b * t.y) * t.y + (z * u.x + b * u.y) * u.y);
+    let t = turned(theta, 0.5 * (ends.x + ends.y));
+    // sin Δθ, and ½ (Δθ − sin Δθ).
+    let span = ends.y - ends.x;
+    let r = span * span;
+    let tail = 1.0 - r / 20.0 * (1.0 - r / 42.0);
+    let chord = span * (1.0 - r / 6.0 * tail);
+    return max(z * t.x * t.y * chord + b * (span * r / 12.0 * tail + chord * t.y * t.y), 0.0);
 }
 
 /// (cos, sin) of an angle that is larger by `by`, at most π/64: series to their last digits.

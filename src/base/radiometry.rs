@@ -11,6 +11,7 @@
 //! | photons | Q λ / (h c) | 1 | [`photons`] |
 //! | irradiance, radiosity | E, M | W m⁻² | [`light`](crate::light) |
 
+use crate::base::error::{Error, Result};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
@@ -81,7 +82,7 @@ pub(crate) fn sin2([a, b]: [f64; 2]) -> f64 {
 
 /// Computes x − sin x for x ∈ [0, π]. The difference loses all digits where x is small, so the series
 /// x³/3! − x⁵/5! + … takes its place there, whose terms fall by x²/20 and faster.
-fn minus_sin(x: f64) -> f64 {
+pub(crate) fn minus_sin(x: f64) -> f64 {
     /// Above this x the difference loses at most 2 bits; below it eight terms of the series leave 1e-17.
     const SERIES: f64 = 1.0;
     if x.abs() > SERIES {
@@ -201,6 +202,22 @@ pub struct Beam {
 }
 
 impl Beam {
+    /// Returns the beam that carries a power Φ, W, through a patch: L = Φ / (cos θ ΔA Δω).
+    ///
+    /// # Errors
+    /// When the patch's étendue is not positive and finite, or the power is negative or not finite.
+    pub fn of_power(power: f64, cos_theta: f64, area: f64, solid_angle: f64) -> Result<Self> {
+        let empty = Self { radiance: 0.0, cos_theta, area, solid_angle };
+        let etendue = empty.etendue();
+        if !(etendue > 0.0 && etendue.is_finite()) {
+            return Err(Error::input(format!("cos θ ΔA Δω is {etendue} m² sr; give a beam of some étendue")));
+        }
+        if !(power >= 0.0 && power.is_finite()) {
+            return Err(Error::input(format!("a power of {power} W; give a finite number from 0 up")));
+        }
+        Ok(Self { radiance: power / etendue, ..empty })
+    }
+
     /// The étendue cos θ ΔA Δω, m² sr, which a beam keeps along its way.
     pub fn etendue(&self) -> f64 {
         self.cos_theta * self.area * self.solid_angle

@@ -15,7 +15,7 @@ use crate::cli::{HEADING, open, print_beside, print_json, warn};
 use crate::io::{Format, TableSet, format, sha256};
 use crate::light;
 use crate::light::bake::Order;
-use crate::light::{Clamped, InvalidTexels, Light, LightSource, SetDetails};
+use crate::light::{Clamped, InvalidTexels, Light, LightSource, MapFile, SetDetails};
 use crate::scene;
 use crate::scene::{Material, Scene};
 use crate::table::Table;
@@ -191,7 +191,8 @@ fn light_of(args: &Args) -> Result<(Light, LightSource)> {
     };
     let invalid =
         if args.clamp { InvalidTexels::Clamp } else { InvalidTexels::Refuse { remedy: "give --clamp" } };
-    let (map, clamped) = light::read(path, invalid)?;
+    let MapFile { map, clamped, notes } = light::read(path, invalid)?;
+    notes.iter().for_each(|note| warn(&format!("{}: {note}", path.display())));
     if map.width() != 2 * map.height() {
         warn(&format!(
             "{}: {} × {} texels; a map of latitude and longitude is twice as wide as high",
@@ -207,7 +208,7 @@ fn light_of(args: &Args) -> Result<(Light, LightSource)> {
     let hash = sha256(path)?;
     let json = json!({
         "kind": "map", "file": path.display().to_string(), "sha256": hash, "width": map.width(),
-        "height": map.height(), "rotation": map.rotation(), "clamped": clamped,
+        "height": map.height(), "rotation": map.rotation(), "clamped": clamped, "notes": notes,
     });
     let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     Ok((Light::Map(map), LightSource { name, json, sha256: Some(hash) }))

@@ -115,7 +115,7 @@ struct CsvLines {
 impl CsvLines {
     /// The next four numbers; `None` at the end.
     fn next(&mut self, path: &Path) -> Result<Option<Angles>> {
-        /// No line of four numbers is so long.
+        /// No line of four numbers is so long, and no comment need be.
         const LONGEST: u64 = 1 << 16;
         loop {
             self.bytes.clear();
@@ -125,6 +125,11 @@ impl CsvLines {
             }
             self.line += 1;
             let place = |error: Error| error.at(format!("{}: line {}", path.display(), self.line));
+            if self.bytes.len() as u64 == LONGEST {
+                let why =
+                    format!("it has {LONGEST} bytes or more, and four numbers have fewer; break the line");
+                return Err(place(Error::input(why)));
+            }
             let text = str::from_utf8(&self.bytes).map_err(|_| place(Error::input("it is not UTF-8")))?;
             // Spreadsheets begin a file with a byte order mark.
             let text = text.trim_start_matches('\u{feff}').trim();

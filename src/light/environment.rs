@@ -23,6 +23,9 @@ pub struct Environment {
 /// The most texels of a map: 400 MiB in memory.
 pub const MAX_TEXELS: usize = 1 << 25;
 
+/// The most columns, or rows.
+const MAX_SIDE: usize = 1 << 16;
+
 /// The texels of a map that were no radiance and were replaced: their number, and the first in words.
 #[derive(Debug, Clone, PartialEq, Eq, Default, serde::Serialize)]
 pub struct Clamped {
@@ -93,7 +96,7 @@ impl Environment {
             if faults.first.is_none() {
                 let [row, column] = [k / self.width, k % self.width];
                 let name = ["R", "G", "B"][channel];
-                faults.first = Some(format!("row {row}, column {column}: {name} is {}", texel[channel]));
+                faults.first = Some(format!("row {row}, column {column}: {name} is {:?}", texel[channel]));
             }
         }
         faults
@@ -210,6 +213,11 @@ impl Environment {
 pub(super) fn check_size(width: usize, height: usize) -> Result<()> {
     if width == 0 || height == 0 {
         return Err(Error::input(format!("{width} × {height} texels; a map has at least one")));
+    }
+    if width.max(height) > MAX_SIDE {
+        return Err(Error::input(format!(
+            "{width} × {height} texels, and rows and columns have at most {MAX_SIDE}; give a map that is twice as wide as high"
+        )));
     }
     if width.checked_mul(height).is_none_or(|texels| texels > MAX_TEXELS) {
         return Err(Error::input(format!(

@@ -4,9 +4,12 @@
 //! closed form ([`DirectionCell::vector`](crate::base::radiometry::DirectionCell::vector)). In a row these are, but for two factors of the row's, L ∫(cos ψ, sin ψ, 1) dψ, whose
 //! sums over columns are made once: a row costs a normal two look-ups, and beside those only columns where the horizon
 //! crosses the row. There n·ω = A cos θ + B(ψ) sin θ is above 0 down each meridian from the row's border to θh, sin(θh − θm) =
-//! n·ω(θm)/√(A² + B²). What lies between is integrated by Gauss–Legendre, two nodes in θ and two in ψ, on pieces between the
-//! borders of columns and where the horizon leaves the row: there it is smooth. As n·ω = 0 where it is cut, a cut that
-//! is off by η costs η²/2 and no more, so the pieces' ends need no accurate arc cosine.
+//! n·ω(θm)/√(A² + B²). Between them the integral is in closed form, A ∫cos θ sin θ dθ + B ∫sin² θ dθ. Over ψ it is integrated
+//! by Gauss–Legendre, on pieces between the borders of columns and where the horizon leaves the row: there it is smooth. As
+//! n·ω = 0 where it is cut, a cut that is off by η costs η²/2 and no more, so the pieces' ends need no accurate arc cosine.
+//!
+//! Each of these terms, of a row's whole columns and of a meridian, is an integral of L max(0, n·ω), which is not negative,
+//! and so a rounding below 0 is taken as 0: that only brings it nearer.
 //!
 //! A horizon crosses each column once, and a row's border twice: a normal costs two look-ups a row, and W + 2 H cells of a few
 //! nodes in a map of W × H. On software Vulkan that is 0.1 µs a cell.
@@ -31,6 +34,9 @@ const KEPT: usize = 1 << 19;
 const MARGIN: f64 = 1e-3;
 /// The least n·ω/(…) that is divided by: rows at a pole and normals along it have no azimuth.
 const TINY: f64 = 1e-30;
+/// Roundings on a term's way: of n and of a sum of 16 columns, of five products and sums of them, and of the sum over
+/// crossed columns, of which there are up to π/n·ω.
+const ROUNDINGS: f64 = 24.0;
 /// Gauss–Legendre's two nodes on [−1, 1] are ± this, of weight 1.
 const NODE: f64 = 0.577_350_269_189_625_8;
 
@@ -150,6 +156,20 @@ impl<'a> PreparedMap<'a> {
         Normal { n, sin: n[0].hypot(n[1]), place }
     }
 
+    /// What roundings of a unit roundoff may cost E, R, G, B: of ∫ L dω, as n·ω is that of vectors of length 1, and near the
+    /// horizon a difference of terms that are not small. [`ROUNDINGS`] says how many there are; sums over columns of up to
+    /// a row's width are in f64 on either path.
+    pub fn roundings(&self, unit: f64) -> [f64; 3] {
+        let all = ROUNDINGS * unit + self.map.width() as f64 * 0.5f64.powi(53);
+        self.map.total().map(|total| all * total)
+    }
+
+    /// Whether f32 holds the map's sums, with room for their products.
+    pub fn fits_f32(&self) -> bool {
+        let largest = self.map.texels().as_flattened().iter().fold(0.0f32, |most, &x| most.max(x));
+        largest == 0.0 || (1e-20..1e30).contains(&largest)
+    }
+
     /// E of some normals of the world, R, G, B; where the horizon crosses a row, each column has `split` pieces.
     pub fn irradiance(&self, normals: &[[f64; 3]], split: u32) -> Vec<[f64; 3]> {
         let of = |&world: &[f64; 3]| {
@@ -199,13 +219,15 @@ impl<'a> PreparedMap<'a> {
         add_sums(&mut sums, &self.run(row, 0, count - before_the_edge), 1.0);
         let Row { across, along, .. } = self.rows[row];
         let [x, y, z] = normal.n;
-        let mut sum =
-            std::array::from_fn(|c| across * (x * sums[0][c] + y * sums[1][c]) + z * along * sums[2][c]);
+        let whole = |c: usize| across * (x * sums[0][c] + y * sums[1][c]) + z * along * sums[2][c];
+        let mut sum = std::array::from_fn(|c| whole(c).max(0.0));
         let sides = (begin..first).map(|k| (k, -1.0)).chain((last..end).map(|k| (k, 1.0)));
         for (k, side) in sides {
-            let part = self.column(normal, row, (k, wrap(k)), side, [inner, outer], split);
             let texel = self.map.texel(row, wrap(k));
-            (0..3).for_each(|c| sum[c] += f64::from(texel[c]) * part);
+            if texel != [0.0; 3] {
+                let part = self.column(normal, row, (k, wrap(k)), side, [inner, outer], split);
+                (0..3).for_each(|c| sum[c] += f64::from(texel[c]) * part);
+            }
         }
         sum
     }
@@ -242,7 +264,7 @@ impl<'a> PreparedMap<'a> {
     }
 
     /// ∫ max(0, n·ω) dω over a cell, of what is on one side of the normal's azimuth: up to `inner` the row is above, up to
-    /// `outer` crossed. Offsets are columns from that azimuth.
+    /// `outer` crossed. These are columns from that azimuth; offsets are columns from the cell's middle, away from it.
     fn column(
         &self,
         normal: &Normal,
@@ -253,19 +275,21 @@ impl<'a> PreparedMap<'a> {
         split: u32,
     ) -> f64 {
         let turn = 0.5 * self.map.width() as f64;
-        // Of the column's middle, from the azimuth, away from it.
         let middle = side * (k as f64 + 0.5 - normal.place);
-        let within = |offset: f64| offset.clamp(middle - 0.5, middle + 0.5).clamp(0.0, turn);
-        let ends = [within(0.0), within(inner), within(outer)];
+        let within = |place: f64| (place - middle).clamp(-0.5, 0.5);
+        let [start, stop] = [0.0, turn].map(within);
+        let [inner, outer] = [inner, outer].map(|place| within(place).clamp(start, stop));
         let across = |offset: f64| {
-            let [cos, sin] = turned(self.columns[column].middle, side * (offset - middle) * self.step);
+            let [cos, sin] = turned(self.columns[column].middle, side * offset * self.step);
             normal.n[0] * cos + normal.n[1] * sin
         };
-        let Row { across: sin2, along, .. } = self.rows[row];
-        let full = gauss([ends[0], ends[1]], |offset| normal.n[2] * along + across(offset) * sin2);
-        let piece = |j: u32| ends[1] + (ends[2] - ends[1]) * f64::from(j) / f64::from(split);
-        let crossed = |j: u32| gauss([piece(j), piece(j + 1)], |at| self.meridian(normal, row, across(at)));
-        self.step * (full + (0..split).map(crossed).sum::<f64>())
+        let part = |from: f64, to: f64| -> f64 {
+            let end = |j: u32| from + (to - from) * f64::from(j) / f64::from(split);
+            let piece =
+                |j: u32| gauss([end(j), end(j + 1)], |offset| self.meridian(normal, row, across(offset)));
+            if from < to { (0..split).map(piece).sum() } else { 0.0 }
+        };
+        self.step * (part(start, inner) + part(inner, outer))
     }
 
     /// ∫ max(0, n·ω) sin θ dθ over a row, n·ω = nz cos θ + B sin θ.
@@ -277,11 +301,14 @@ impl<'a> PreparedMap<'a> {
         let q = height * height;
         let horizon = height * (1.0 + q * (1.0 / 6.0 + q * (3.0 / 40.0 + q * (15.0 / 336.0))));
         let horizon = horizon.clamp(-self.half, self.half);
-        let ends = if z >= 0.0 { [-self.half, horizon] } else { [-horizon, self.half] };
-        gauss(ends, |by| {
-            let [cos, sin] = turned([cos, sin], by);
-            (z * cos + b * sin) * sin
-        })
+        let [from, to] = if z >= 0.0 { [-self.half, horizon] } else { [-horizon, self.half] };
+        let [cos, sin] = turned([cos, sin], 0.5 * (from + to));
+        // sin Δθ, and ½ (Δθ − sin Δθ).
+        let span = to - from;
+        let q = span * span;
+        let tail = 1.0 - q / 20.0 * (1.0 - q / 42.0 * (1.0 - q / 72.0));
+        let (chord, bulge) = (span * (1.0 - q / 6.0 * tail), span * q / 12.0 * tail);
+        (z * cos * sin * chord + b * (bulge + chord * sin * sin)).max(0.0)
     }
 }
 

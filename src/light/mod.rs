@@ -30,7 +30,7 @@ mod sky;
 
 pub use environment::{Clamped, Environment, MAX_TEXELS};
 #[cfg(feature = "files")]
-pub use read::{InvalidTexels, read};
+pub use read::{InvalidTexels, MapFile, read};
 #[cfg(feature = "files")]
 pub use set::{LightSource, SetDetails};
 pub use sky::{Directional, Disk, Radiance, Sky};

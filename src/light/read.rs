@@ -1,11 +1,10 @@
 //! Reading environment maps: OpenEXR and Radiance HDR.
 
+mod openexr;
+mod radiance;
+
 use crate::base::error::{Error, Result};
-use crate::light::environment::{Clamped, Environment, check_size};
-use exr::meta::MetaData;
-use exr::prelude::{ReadChannels, ReadLayers, read as exr_read};
-use image::ImageDecoder;
-use image::codecs::hdr::HdrDecoder;
+use crate::light::environment::{Clamped, Environment};
 use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
@@ -28,25 +27,44 @@ pub enum InvalidTexels<'a> {
     Clamp,
 }
 
+/// An environment map as its file has it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapFile {
+    /// The map.
+    pub map: Environment,
+    /// The texels that were replaced.
+    pub clamped: Clamped,
+    /// What the file says beside its texels and how it was taken, in sentences: windows that differ, exposures.
+    pub notes: Vec<String>,
+}
+
+/// Texels of a file, row by row from the top, R, G, B.
+struct Picture {
+    width: usize,
+    height: usize,
+    texels: Vec<[f32; 3]>,
+    notes: Vec<String>,
+}
+
 /// Reads an environment map in latitude and longitude. Its first bytes, not its name, tell OpenEXR from Radiance HDR.
 ///
 /// # Errors
 /// When the file is not such a map, is cut short, has too many texels, or texels that are no radiance.
-pub fn read(path: &Path, invalid: InvalidTexels) -> Result<(Environment, Clamped)> {
-    read_texels(path)
-        .and_then(|(width, height, texels)| match invalid {
-            InvalidTexels::Clamp => Environment::clamped(width, height, texels),
-            InvalidTexels::Refuse { remedy } => {
-                let map = Environment::checked(width, height, texels, remedy)?;
-                Ok((map, Clamped::default()))
-            }
+pub fn read(path: &Path, invalid: InvalidTexels) -> Result<MapFile> {
+    read_picture(path)
+        .and_then(|Picture { width, height, texels, notes }| {
+            let (map, clamped) = match invalid {
+                InvalidTexels::Clamp => Environment::clamped(width, height, texels)?,
+                InvalidTexels::Refuse { remedy } => {
+                    (Environment::checked(width, height, texels, remedy)?, Clamped::default())
+                }
+            };
+            Ok(MapFile { map, clamped, notes })
         })
         .map_err(|error| error.at(path.display()))
 }
 
-type Texels = (usize, usize, Vec<[f32; 3]>);
-
-fn read_texels(path: &Path) -> Result<Texels> {
+fn read_picture(path: &Path) -> Result<Picture> {
     let mut file = File::open(path).map_err(Error::io("read", path))?;
     let bytes = file.metadata().map_err(Error::io("read", path))?.len();
     if bytes > MAX_BYTES {
@@ -58,49 +76,8 @@ fn read_texels(path: &Path) -> Result<Texels> {
     let file = BufReader::new(file);
     match head[..] {
         [] => Err(Error::input("it is empty; give an OpenEXR or a Radiance HDR map")),
-        _ if head == EXR => read_exr(file),
-        [b'#', b'?', ..] => read_hdr(file),
+        _ if head == EXR => openexr::read(file),
+        [b'#', b'?', ..] => radiance::read(file),
         _ => Err(Error::input("neither OpenEXR nor Radiance HDR; give a map in one of these")),
     }
-}
-
-fn read_exr(mut file: BufReader<File>) -> Result<Texels> {
-    let fault = |why: exr::error::Error| {
-        Error::input(format!(
-            "not a whole OpenEXR file ({why}); write the map again as scanlines with R, G and B"
-        ))
-    };
-    // The size is checked before memory is reserved for it.
-    let headers = MetaData::read_from_buffered(&mut file, false).map_err(fault)?.headers;
-    if let Some(size) = headers.first().map(|header| header.layer_size) {
-        check_size(size.width(), size.height())?;
-    }
-    file.rewind().map_err(|why| Error::input(why.to_string()))?;
-    let image = exr_read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .rgb_channels(
-            |size, _| (size.width(), vec![[0.0f32; 3]; size.area()]),
-            |(width, texels): &mut (usize, Vec<[f32; 3]>), at, (r, g, b): (f32, f32, f32)| {
-                texels[at.y() * *width + at.x()] = [r, g, b];
-            },
-        )
-        .first_valid_layer()
-        .all_attributes()
-        .from_buffered(file)
-        .map_err(fault)?;
-    let size = image.layer_data.size;
-    let (_, texels) = image.layer_data.channel_data.pixels;
-    Ok((size.width(), size.height(), texels))
-}
-
-fn read_hdr(file: BufReader<File>) -> Result<Texels> {
-    let fault = |why: image::ImageError| {
-        Error::input(format!("not a whole Radiance HDR file ({why}); write the map again"))
-    };
-    let decoder = HdrDecoder::new(file).map_err(fault)?;
-    let [width, height] = <[u32; 2]>::from(decoder.dimensions()).map(|n| n as usize);
-    check_size(width, height)?;
-    let pixels = image::DynamicImage::from_decoder(decoder).map_err(fault)?.into_rgb32f().into_raw();
-    Ok((width, height, pixels.as_chunks().0.to_vec()))
 }

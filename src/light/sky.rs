@@ -1,6 +1,7 @@
 //! Lights that have closed forms. Their constructors check them, so that no wrong light can be built.
 
 use crate::base::error::{Error, Result};
+use crate::base::radiometry::minus_sin;
 use crate::light::{angles, dot};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -187,12 +188,16 @@ impl Sky {
     /// ```text
     /// ∫ cos³ ψ dψ ∫ cos χ cos(χ − θ) dχ over χ ∈ [θ − π/2, π/2]  =  ⅔ ((π − θ) cos θ + sin θ)
     /// ```
+    ///
+    /// With t = π − θ that is ⅔ (2 t sin²(t/2) − (t − sin t)), and ½ π (1 + cos θ) = π sin²(t/2): differences that lose no
+    /// digits where the surface faces down, and no term of which is below 0.
     pub fn irradiance(&self, normal: [f64; 3]) -> [f64; 3] {
-        let (theta, _) = angles(normal);
-        let (sin, cos) = theta.sin_cos();
-        let above = 0.5 * PI * (1.0 + cos);
-        let below = 0.5 * PI * (1.0 - cos);
-        let gradient = ((PI - theta) * cos + sin) / 1.5;
+        let [x, y, z] = normal;
+        let (t, _) = angles([x, y, -z]);
+        let (sin, cos) = (0.5 * t).sin_cos();
+        let above = PI * sin * sin;
+        let below = PI * cos * cos;
+        let gradient = (2.0 * t * sin * sin - minus_sin(t)) / 1.5;
         std::array::from_fn(|k| {
             self.horizon[k] * (above - gradient) + self.zenith[k] * gradient + self.ground[k] * below
         })

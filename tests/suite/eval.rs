@@ -383,6 +383,7 @@ fn bad_lists_are_refused() {
         ("o.csv", b"0,0,0,0\n\n0,0,-0.1,0\n".to_vec(), &["line 3", "theta_e = -0.1"]),
         ("p.csv", b"0,inf,0,0\n".to_vec(), &["line 1", "phi_i = inf"]),
         ("q.csv", b"0,0,0,\xff\n".to_vec(), &["line 1", "UTF-8"]),
+        ("s.csv", [b"0,0,0,0\n#", &[b'x'; 1 << 16][..], b"\n0,0,0,0\n"].concat(), &["line 2", "65536 bytes"]),
         ("r.txt", b"0,0,0,0\n".to_vec(), &[".npy", ".csv"]),
     ];
     for (name, bytes, words) in cases {

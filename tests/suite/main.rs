@@ -27,6 +27,8 @@ mod hostile;
 mod integrals;
 mod layers;
 mod light;
+#[cfg(feature = "cli")]
+mod maps;
 mod mirror_limit;
 mod ndfs;
 #[cfg(feature = "cli")]

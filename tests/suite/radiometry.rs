@@ -180,3 +180,14 @@ fn radiance_is_conserved_along_a_ray() {
         close(leaves.etendue(), arrives.etendue(), budget);
     }
 }
+
+/// Φ = L cos θ ΔA Δω, and L from Φ.
+#[test]
+fn radiance_and_power_are_each_others() {
+    let beam = Beam { radiance: 7.0, cos_theta: 0.3, area: 2e-4, solid_angle: 1e-3 };
+    let back = Beam::of_power(beam.power(), 0.3, 2e-4, 1e-3).unwrap();
+    close(back.radiance, 7.0, 1e-15);
+    for (power, cos_theta) in [(1.0, 0.0), (1.0, -0.5), (-1.0, 0.5), (f64::NAN, 0.5), (1.0, f64::NAN)] {
+        assert!(Beam::of_power(power, cos_theta, 1.0, 1.0).is_err());
+    }
+}

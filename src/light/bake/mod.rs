@@ -25,6 +25,9 @@ use std::collections::BTreeMap;
 /// light comes from, nothing is relative to it.
 pub const FLOOR: f64 = 1e-3;
 
+/// Texels of a table at most. Each is integrated, and takes some hundred bytes until the table is written.
+const MAX_TABLE: usize = 1 << 22;
+
 /// What share of the tolerance integrals are asked to meet: at grazing angles their estimates are up to five times too small,
 /// measured.
 const MARGIN: f64 = 0.1;
@@ -142,6 +145,20 @@ impl Order<'_> {
             table.name, self.tolerance, table.error.worst
         )))
     }
+}
+
+/// Refuses a table that is too large, before memory is taken.
+fn check_size(axes: &[Axis], settings: usize) -> Result<()> {
+    let texels = axes.iter().map(Axis::len).try_fold(settings, usize::checked_mul);
+    if texels.is_some_and(|texels| texels <= MAX_TABLE) {
+        return Ok(());
+    }
+    let words: Vec<_> =
+        axes.iter().map(|axis| format!("{} {}", axis.len(), axis.variable().name())).collect();
+    Err(Error::input(format!(
+        "{} make a table of more than the {MAX_TABLE} texels that a light fills; take fewer",
+        words.join(" × ")
+    )))
 }
 
 /// The lobes of a material, at a roughness if one is given in place of its own.

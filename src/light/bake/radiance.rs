@@ -5,7 +5,7 @@ use crate::base::error::Result;
 use crate::base::timings::Timings;
 use crate::check::ReferenceLobe;
 use crate::light::bake::{
-    FLOOR, MARGIN, Order, RgbValues, estimate, frames, lobes_of, reference_frames, timed,
+    FLOOR, MARGIN, Order, RgbValues, check_size, estimate, frames, lobes_of, reference_frames, timed,
 };
 use crate::light::exitant;
 use crate::light::exitant::View;
@@ -29,6 +29,7 @@ impl Order<'_> {
         axes: [Axis; 4],
         stages: &mut Timings,
     ) -> Result<[Table; 2]> {
+        check_size(&axes, roughness.len().max(1))?;
         let frames = frames(&axes[0], &axes[1]);
         let directions =
             || axes[2].values().iter().flat_map(|&t| axes[3].values().iter().map(move |&p| (t, p)));

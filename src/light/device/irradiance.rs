@@ -56,7 +56,8 @@ impl Device {
         let of_normal = |&world: &[f64; 3]| {
             let normal = map.normal(world);
             let [x, y, z] = normal.n;
-            [x, y, z, normal.sin, normal.place, 0.0, 0.0, 0.0].map(|x| x as f32)
+            let column = normal.place.floor();
+            [x, y, z, normal.sin, column, normal.place - column, 0.0, 0.0].map(|x| x as f32)
         };
         let uploaded: Vec<_> = normals.iter().map(of_normal).collect();
         let uploaded = self.storage(uploaded.as_flattened());
@@ -112,10 +113,10 @@ impl Device {
     }
 }
 
-/// Crossed columns of a row that one invocation takes: a turn each and one for each piece, the one that ends them, and beside
-/// them those of the sums, twice at both ends of a run.
+/// Crossed columns of a row that one invocation takes: a turn each, and for both parts one for each piece and the one that ends
+/// them; and beside them those of the sums, twice at both ends of a run.
 fn crossed_columns(split: u32) -> usize {
-    (SAFE_TURNS as usize - 4 * BLOCK - 64) / (split as usize + 2)
+    (SAFE_TURNS as usize - 4 * BLOCK - 64) / (2 * split as usize + 3)
 }
 
 fn of_row(row: &Row) -> [f32; 8] {

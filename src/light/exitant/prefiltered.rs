@@ -7,9 +7,9 @@ use crate::light::{Frame, Light, Radiance, angles};
 use crate::model::lobe::Lobe;
 use std::f64::consts::PI;
 
-/// LD, the pre-filtered radiance: Le over what a white sky would make of it, at n = v = r for each r, all weights 1.
-/// Karis 2013, "Real shading in Unreal Engine 4", eq. 8, and Lagarde & de Rousiers 2014, eq. 54, have it of D cos θi alone;
-/// here the lobe is f cos θi itself, at ωe = n.
+/// LD, the pre-filtered radiance of engines: ∫ L D(ωm) cos θi dωi / ∫ D(ωm) cos θi dωi at n = v = r for each r. Karis 2013,
+/// "Real shading in Unreal Engine 4", eq. 8 with his code; Lagarde & de Rousiers 2014, eq. 54. Their weight has neither masking nor
+/// Fresnel term, unlike f cos θi. A lobe that is no microfacets' is filtered with its own f cos θi.
 ///
 /// # Errors
 /// As [`radiance`]'s.
@@ -21,7 +21,7 @@ pub fn prefiltered(
     tolerance: f64,
     observer: &dyn Observer,
 ) -> Result<Vec<[f64; 3]>> {
-    let plain = lobe.clone().with_weights(vec![[1.0; 2]; 3])?;
+    let plain = distribution(lobe)?.with_weights(vec![[1.0; 2]; 3])?;
     let along = |&r: &[f64; 3]| {
         let (theta, phi) = angles(r);
         View { frame: Frame::new(theta, phi), theta_e: 0.0, phi_e: 0.0 }
@@ -33,6 +33,17 @@ pub fn prefiltered(
     let one = radiance(evaluator, lobes, &white, &views[..1.min(views.len())], tolerance, observer)?;
     let Some(whole) = one.first().map(|one| one.value) else { return Ok(Vec::new()) };
     Ok(lit.iter().map(|lit| std::array::from_fn(|c| lit.value[c] / whole[c])).collect())
+}
+
+/// A lobe with the same D and without other terms at θe = 0: Ashikhmin and Neubelt's visibility 1/(4 (μi + μe − μi μe)) is 1/4
+/// there, so that f cos θi = D cos θi / 4.
+fn distribution(lobe: &Lobe) -> Result<Lobe> {
+    if lobe.is_delta() || lobe.model().microfacet.is_none() {
+        return Ok(lobe.clone());
+    }
+    let model = lobe.model().with_terms(Some("ashikhmin-neubelt"), Some("none"))?;
+    let plain = Lobe::new(model, lobe.roughness(), lobe.weights().to_vec())?;
+    Ok(plain.with_parameters(lobe.parameters()))
 }
 
 /// What engines make of a lobe: LD(r) (F0·A + F90·B)(θe), and of a diffuse one, without a roughness, E(n)/π in place

@@ -50,7 +50,7 @@ pub(super) fn integrate(
     let mut all = Vec::with_capacity(views.len());
     for group in views.chunks(VIEWS) {
         let views: Vec<_> = group.iter().map(|view| Local::new(view, &domain, width)).collect();
-        all.extend(refine(f, &domain, &cells, &views, tolerance)?);
+        all.extend(refine(f, &domain, &cells, &views, tolerance)?.into_iter().map(not_negative));
         observer.advance(group.len() as f64 / all.capacity().max(1) as f64)?;
     }
     Ok(all)
@@ -77,6 +77,13 @@ fn directional(
         Integrated { value, error: 0.0 }
     };
     Ok(values.as_chunks::<3>().0.iter().zip(cosines).map(value).collect())
+}
+
+/// Takes a channel below 0, which f L cos θi never is, as 0. Blocks of texels are interpolated beyond their nodes, and so a
+/// channel that sends next to nothing may be. What is taken is an error that was made.
+fn not_negative(one: Integrated) -> Integrated {
+    let taken = one.value.iter().map(|x| (-x).max(0.0)).sum::<f64>() / 3.0;
+    Integrated { value: one.value.map(|x| x.max(0.0)), error: one.error.max(taken) }
 }
 
 /// A cell of a view with what it sends and what that may be off.
