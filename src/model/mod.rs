@@ -36,8 +36,8 @@ use crate::base::tolerance::decade;
 use crate::base::tolerance::is_fine;
 use crate::model::directions::Map;
 use crate::model::parameters::{Parameters, Setting};
-use crate::table::axis::Variable;
-use crate::table::quantity::Quantity;
+#[cfg(feature = "lab")]
+use crate::table::{axis::Variable, quantity::Quantity};
 use std::sync::{PoisonError, RwLock};
 
 /// A reflection model: f = a·A + b·B with weights that a material gives and components that the
@@ -373,6 +373,7 @@ impl Model {
     }
 
     /// The variables of a table of it: its roughness, if it has one, and those of the quantity's directions.
+    #[cfg(feature = "lab")]
     pub(crate) fn variables(&self, quantity: &Quantity) -> impl Iterator<Item = Variable> {
         let roughness = self.shape.map(|_| Variable::Roughness);
         roughness.into_iter().chain(quantity.variables(self.is_anisotropic()).iter().copied())
