@@ -217,6 +217,20 @@ fn faint_irradiance_is_within_its_estimate() {
     }
 }
 
+/// A table that misses its tolerance says by how much one texel does, and which; or that only the estimate does.
+#[test]
+fn a_miss_names_one_texel() {
+    let light = Light::Map(sun_and_sky(64, 32));
+    let order = order(&Evaluator::Cpu, &light, Check::All);
+    let mut table = order.irradiance(grid(2, 3), &mut Timings::default()).unwrap();
+    let strict = Order { tolerance: 1e-12, ..order };
+    let why = strict.within_tolerance(&table).unwrap_err().to_string();
+    assert!(why.contains("reference = ") && why.contains("theta_n = ") && why.contains("1e-12"), "{why}");
+    table.error.measured_max = Some(0.0);
+    let why = strict.within_tolerance(&table).unwrap_err().to_string();
+    assert!(why.contains("by its estimate") && !why.contains("theta_n"), "{why}");
+}
+
 /// Le and M of the same are not negative either.
 #[test]
 fn faint_light_is_never_sent_back_below_zero() {

@@ -4,7 +4,7 @@
 use exr::image::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, Layers};
 use exr::math::Vec2;
 use exr::meta::attribute::{EnvironmentMap, IntegerBounds, LineOrder};
-use exr::prelude::{Blocks, Compression, LayerAttributes, WritableImage};
+use exr::prelude::{Blocks, Compression, LayerAttributes, WritableImage, f16};
 use gonio::light::{InvalidTexels, MapFile, read};
 use std::io::Cursor;
 
@@ -237,6 +237,17 @@ fn seeds() -> Vec<Vec<u8>> {
         Compression::DWAA(None),
     ];
     let mut seeds: Vec<_> = compressions.map(plain).into();
+    // Some compress half floats alone.
+    seeds.extend([Compression::PIZ, Compression::PXR24, Compression::B44, Compression::B44A].map(
+        |compression| {
+            let mut halves = part(&["R", "G", "B"], WHOLE, [0, 0], compression);
+            for channel in &mut halves.channel_data.list {
+                let FlatSamples::F32(samples) = &channel.sample_data else { unreachable!() };
+                channel.sample_data = FlatSamples::F16(samples.iter().map(|&x| f16::from_f32(x)).collect());
+            }
+            exr(vec![halves])
+        },
+    ));
     let mut tiled = part(&["R", "G", "B"], WHOLE, [0, 0], Compression::ZIP1);
     tiled.encoding.blocks = Blocks::Tiles(Vec2(4, 4));
     seeds.push(exr(vec![tiled]));

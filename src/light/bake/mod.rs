@@ -136,13 +136,19 @@ impl Order<'_> {
     /// # Errors
     /// [`Error::Promise`] with the worst texel.
     pub fn within_tolerance(&self, table: &Table) -> Result<()> {
-        let off = table.error.measured_max.into_iter().chain(table.error.estimate).fold(0.0, f64::max);
-        if off <= self.tolerance || !table.quantity.is_promised {
-            return Ok(());
-        }
+        let is_off = |off: &f64| *off > self.tolerance && table.quantity.is_promised;
+        let TableError { measured_max, estimate, worst, .. } = &table.error;
+        let what = match (measured_max.filter(is_off), estimate.filter(is_off)) {
+            (None, None) => return Ok(()),
+            (Some(off), _) => {
+                let place: Vec<_> = worst.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+                format!("its error is {off:.3e} at {}", place.join(", "))
+            }
+            (None, Some(off)) => format!("its error may be {off:.3e} by its estimate"),
+        };
         Err(Error::Promise(format!(
-            "table {}: its error is {off:.2e} where {:.0e} is allowed ({:?}); allow more, or bake with --device cpu",
-            table.name, self.tolerance, table.error.worst
+            "table {}: {what}, where {:e} is allowed; allow more, or compute it on the CPU, in f64",
+            table.name, self.tolerance
         )))
     }
 }

@@ -12,6 +12,7 @@ use exr::meta::attribute::{EnvironmentMap, IntegerBounds, SampleType};
 use exr::meta::header::Header;
 use half::f16;
 use std::io::{Read, Seek};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Bytes of a block of pixels at most, which is decoded at once. The decoder needs some four times as much beside the map.
 const MAX_BLOCK: usize = 1 << 26;
@@ -22,7 +23,14 @@ const MAX_CHANNELS: usize = 1024;
 /// Channels that a message names.
 const NAMED: usize = 40;
 
+/// Reads a map. A panic of the decoder, whose sums for a damaged block of B44 may overflow where that is checked, is an error.
 pub(super) fn read(file: impl Read + Seek) -> Result<Picture> {
+    catch_unwind(AssertUnwindSafe(|| decode(file))).unwrap_or_else(|_| {
+        Err(Error::input("not a whole OpenEXR file (its decoder stopped); write the map again"))
+    })
+}
+
+fn decode(file: impl Read + Seek) -> Result<Picture> {
     let reader = block::read(file, false).map_err(explain)?;
     let headers = reader.headers();
     headers.iter().try_for_each(check_part)?;
