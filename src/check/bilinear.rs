@@ -41,6 +41,14 @@ const ROUGHNESS: f64 = 0.05;
 /// The tolerance of the fast f64 path, far below any that a bilinear look-up meets.
 const FINE: Tolerance = Tolerance::known(1e-6);
 
+/// The tolerance of the fast path where nothing is promised of look-ups and an integral takes long: a tenth of the table's.
+fn fast_tolerance(plan: &TablePlan) -> Tolerance {
+    match has_listed_directions(plan) && plan.bilinear().is_none() {
+        true => Tolerance::known((0.1 * plan.tolerance()).max(FINE.get())),
+        false => FINE,
+    }
+}
+
 /// Measures the bilinear error of `values`, the table of `plan`; `None` for values of f, for listed axes (no reader finds
 /// its position in them), and where nothing is to be checked.
 pub(crate) fn measure(plan: &TablePlan, values: &Values, check: Check) -> Result<Option<InterpolationError>> {
@@ -49,9 +57,13 @@ pub(crate) fn measure(plan: &TablePlan, values: &Values, check: Check) -> Result
         return Ok(None);
     }
     let domain: Vec<_> = plan.axes().iter().map(|axis| promised(axis.variable(), axis.range())).collect();
-    let dense = Dense::new(plan, values, test_grid(plan));
-    let share = if is_anisotropic_mean(plan) { 4 } else { 1 };
-    let (searched, referenced) = (SEARCHED / share, REFERENCED / share);
+    let tolerance = fast_tolerance(plan);
+    let dense = Dense::new(plan, values, test_grid(plan), tolerance);
+    let (searched, referenced) = match (is_anisotropic_mean(plan), has_listed_directions(plan)) {
+        (true, _) => (SEARCHED / 4, REFERENCED / 8),
+        (false, true) => (SEARCHED / 4, REFERENCED),
+        (false, false) => (SEARCHED, REFERENCED),
+    };
     let worst = dense.worst(&domain, searched);
     let mut points: Vec<_> = worst.iter().map(|&texel| dense.around(plan, values, &domain, texel)).collect();
     points
@@ -61,7 +73,7 @@ pub(crate) fn measure(plan: &TablePlan, values: &Values, check: Check) -> Result
     let checked: Vec<_> = points
         .par_iter()
         .map(|point| {
-            let plan_at_point = fine(plan, point.iter().map(|&x| vec![x]).collect(), FINE);
+            let plan_at_point = fine(plan, point.iter().map(|&x| vec![x]).collect(), tolerance);
             let fast = evaluate(&plan_at_point);
             let truth = check::reference_within(&plan_at_point, 0, check::reference_error(plan, check));
             let read = look_up(plan.axes(), values, channels, point);
@@ -97,8 +109,7 @@ pub(crate) fn measure(plan: &TablePlan, values: &Values, check: Check) -> Result
     }))
 }
 
-/// The number of worst points around which a finer grid is searched; a quarter of them, and of the further points, in
-/// means of anisotropic lobes, whose reference takes longer.
+/// The number of worst points around which a finer grid is searched; fewer where an integral or its reference takes long.
 const SEARCHED: usize = 8;
 /// The number of further points that are compared with the reference. The fast path, which finds the worst points, is
 /// certified by a finer rule of its own.
@@ -107,7 +118,7 @@ const REFERENCED: usize = 8;
 /// The largest error in the promise's domain, by the fast path alone: the layout search uses no reference.
 pub(crate) fn largest(plan: &TablePlan, values: &Values) -> f64 {
     let domain: Vec<_> = plan.axes().iter().map(|axis| promised(axis.variable(), axis.range())).collect();
-    let dense = Dense::new(plan, values, test_grid(plan));
+    let dense = Dense::new(plan, values, test_grid(plan), FINE);
     dense.worst(&domain, 1).first().map_or(0.0, |&texel| dense.errors[texel])
 }
 
@@ -175,13 +186,15 @@ struct Dense {
     /// The sum of the squared errors of each texel's channels.
     squares: Vec<f64>,
     channels: usize,
+    /// The tolerance of the integrals that stand in for the exact values.
+    tolerance: Tolerance,
 }
 
 impl Dense {
-    fn new(plan: &TablePlan, values: &Values, coordinates: Vec<Vec<f64>>) -> Self {
+    fn new(plan: &TablePlan, values: &Values, coordinates: Vec<Vec<f64>>, tolerance: Tolerance) -> Self {
         let channels = plan.channels().len();
-        let truth = evaluate(&fine(plan, coordinates.clone(), FINE));
-        let mut dense = Self { coordinates, errors: vec![], squares: vec![], channels };
+        let truth = evaluate(&fine(plan, coordinates.clone(), tolerance));
+        let mut dense = Self { coordinates, errors: vec![], squares: vec![], channels, tolerance };
         for (texel, truth) in truth.chunks(channels).enumerate() {
             let read = look_up(plan.axes(), values, channels, &dense.coordinates(texel));
             let errors = read.iter().zip(truth).map(|(a, b)| or_infinite((a - b).abs()));
@@ -223,7 +236,7 @@ impl Dense {
             };
             sorted((-STEPS..=STEPS).map(step).collect())
         });
-        let finer = Dense::new(plan, values, near.collect());
+        let finer = Dense::new(plan, values, near.collect(), self.tolerance);
         finer
             .worst(domain, 1)
             .first()
@@ -250,7 +263,7 @@ impl Dense {
 fn test_grid(plan: &TablePlan) -> Vec<Vec<f64>> {
     const MOST_CELLS: usize = 64;
     const LEAST_CELLS: usize = 8;
-    const MOST_LISTED: usize = 1 << 13;
+    const MOST_LISTED: usize = 1 << 12;
     let grid = |cells: usize| -> Vec<_> { plan.axes().iter().map(|axis| test_points(axis, cells)).collect() };
     let points = |cells: usize| grid(cells).iter().map(Vec::len).product::<usize>();
     let mut cells = MOST_CELLS;
