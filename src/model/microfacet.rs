@@ -626,9 +626,9 @@ mod tests {
             let telling =
                 model.terms().iter().filter(|(_, there, own)| own.name != there[0].name).count() < 2;
             let count = match (film, telling) {
-                (true, true) => 8,
+                (true, true) => 5,
                 (true, false) => 1,
-                (false, true) => 200 / extremes.len().min(6),
+                (false, true) => 120 / extremes.len().min(6),
                 (false, false) => 4,
             };
             let worst: Vec<[f64; 9]> = (0..count * extremes.len())

@@ -319,7 +319,7 @@ mod tests {
                     nodes.par_iter().map(at).reduce(|| [0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]])
                 };
                 let exact = sum_of(rule(1e-10), 1e-9);
-                for tolerance in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8] {
+                for tolerance in [1e-1, 1e-2, 1e-4, 1e-6, 1e-8] {
                     let found = sum_of(rule(tolerance), 0.1 * tolerance);
                     let error = (found[0] - exact[0]).abs().max((found[1] - exact[1]).abs());
                     println!("{name} {alpha} {gamma} to {tolerance:e}: {error:.1e}");
