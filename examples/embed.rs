@@ -1,7 +1,7 @@
 //! An engine embeds gonio: a GGX split-sum (DFG) table baked as a texture on the engine's own device, in the
 //! engine's own encoder, and sampled by the engine's next pass. The table never leaves the device.
 //!
-//!     cargo run --release --no-default-features --example embed [furnace.png]
+//!     cargo run --release --no-default-features --features vulkan --example embed [furnace.png]
 //!
 //! The picture is the white furnace one can see: a uniform environment of which a surface that loses
 //! nothing must reflect exactly what it receives, and so vanish. Roughness runs from 0 to 1. Left halves
