@@ -19,7 +19,7 @@ use gonio::reference::{Angles, MIN_MU, Reference, Setting};
 use gonio::table::axis::{Axis, Variable};
 use gonio::table::quantity::RHO_DH;
 use gonio::verify;
-use gonio::verify::{Options, Sum};
+use gonio::verify::{Sum, VerifyOptions};
 use std::f64::consts::PI;
 
 fn lommel_seeliger() -> ModelBuilder {
@@ -77,8 +77,11 @@ fn main() -> gonio::Result<()> {
     println!("ρ_dh of 64 θi: {:.1e} off at most", table.error.measured_max.unwrap_or(f64::NAN));
 
     let mut subject = Sum::model(&evaluator, Lobe::new(model, None, vec![[1.0, 0.0]; 3])?, vec![])?;
-    let report =
-        verify::check(&mut subject, &Options { budget: 1_000_000, ..Options::default() }, &Unobserved)?;
+    let report = verify::check(
+        &mut subject,
+        &VerifyOptions { budget: 1_000_000, ..VerifyOptions::default() },
+        &Unobserved,
+    )?;
     for finding in &report.findings {
         println!("{:14} {:?}: {}", finding.property, finding.verdict, finding.said);
     }

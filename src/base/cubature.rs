@@ -13,7 +13,7 @@ use std::collections::BinaryHeap;
 
 /// A rectangle of the unit square of a chart.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Rectangle {
+pub(crate) struct CubatureCell {
     /// Which chart.
     pub chart: usize,
     /// Both ends of the first coordinate.
@@ -37,10 +37,10 @@ pub(crate) const EVALUATIONS: usize = 15 * 15;
 /// The samples of rectangles whose errors add up to no more than the tolerance. `None` when that would take more than
 /// `most` evaluations to sum, or when a value is not finite.
 pub(crate) fn refine<T>(
-    start: Vec<Rectangle>,
+    start: Vec<CubatureCell>,
     tolerance: f64,
     most: usize,
-    mut measure: impl FnMut(&Rectangle) -> Measured<T>,
+    mut measure: impl FnMut(&CubatureCell) -> Measured<T>,
 ) -> Option<Vec<T>> {
     let mut cells = BinaryHeap::new();
     for rectangle in start {
@@ -67,7 +67,7 @@ pub(crate) fn refine<T>(
     }
 }
 
-impl Rectangle {
+impl CubatureCell {
     fn halves(self, across_u: bool) -> [Self; 2] {
         let cut = |[low, high]: [f64; 2]| {
             let middle = 0.5 * (low + high);
@@ -81,12 +81,12 @@ impl Rectangle {
 }
 
 struct Cell<T> {
-    rectangle: Rectangle,
+    rectangle: CubatureCell,
     measured: Measured<T>,
 }
 
 impl<T> Cell<T> {
-    fn bisected(&self, measure: &mut impl FnMut(&Rectangle) -> Measured<T>) -> [Self; 2] {
+    fn bisected(&self, measure: &mut impl FnMut(&CubatureCell) -> Measured<T>) -> [Self; 2] {
         let [of_u, of_x] = self.measured.errors;
         let along = usize::from(of_u < of_x);
         let mut halves = self
@@ -189,7 +189,7 @@ mod tests {
     }
 
     fn integral(f: impl Fn(f64, f64) -> f64, tolerance: f64, most: usize) -> Option<f64> {
-        let start = vec![Rectangle { chart: 0, u: [0.0, 1.0], x: [0.0, 1.0] }];
+        let start = vec![CubatureCell { chart: 0, u: [0.0, 1.0], x: [0.0, 1.0] }];
         let sums = refine(start, tolerance, most, |r| {
             let mut sums = [0.0; 3];
             for u in kronrod(r.u) {

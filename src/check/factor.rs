@@ -110,8 +110,8 @@ const MOST_POINTS: usize = 16;
 const CURVES_KEPT: usize = 512;
 
 /// The key of a curve: a model, and the bits of its measure of a roughness, of its error and of its parameters.
-type Key = (&'static str, u64, u64, [u64; 8]);
-static CURVES: LazyLock<Mutex<HashMap<Key, Arc<ReferenceCurve>>>> = LazyLock::new(Mutex::default);
+type ReferenceKey = (&'static str, u64, u64, [u64; 8]);
+static CURVES: LazyLock<Mutex<HashMap<ReferenceKey, Arc<ReferenceCurve>>>> = LazyLock::new(Mutex::default);
 
 impl ReferenceCurve {
     fn new(albedo: &Albedo, row: Option<f64>, error: f64) -> Option<Arc<Self>> {

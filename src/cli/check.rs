@@ -14,7 +14,7 @@ use crate::io::Outputs;
 use crate::scene;
 use crate::verify;
 use crate::verify::user_shader::{UserFunction, UserShader, directions};
-use crate::verify::{Finding, Input, Options, Parameter, Report, STEPS, Symmetry, Verdict};
+use crate::verify::{Finding, Input, ParameterRange, Report, STEPS, Symmetry, Verdict, VerifyOptions};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use targets::CheckTarget;
@@ -246,8 +246,8 @@ pub(super) struct Checked {
 }
 
 impl Args {
-    fn options(&self) -> Options {
-        Options { budget: self.budget, ..Options::default() }
+    fn options(&self) -> VerifyOptions {
+        VerifyOptions { budget: self.budget, ..VerifyOptions::default() }
     }
 }
 
@@ -272,7 +272,7 @@ fn show_report(args: &Args, report: &Report, seconds: f64, inputs: &Vec<Option<S
 }
 
 /// Parses `--set` into one value or range for each parameter of the function.
-fn parameters(function: &UserFunction, sets: &[String]) -> Result<Vec<Parameter>> {
+fn parameters(function: &UserFunction, sets: &[String]) -> Result<Vec<ParameterRange>> {
     let mut given = Vec::new();
     for set in sets {
         let fault = || {
@@ -281,7 +281,7 @@ fn parameters(function: &UserFunction, sets: &[String]) -> Result<Vec<Parameter>
         let (name, range) = set.split_once('=').ok_or_else(fault)?;
         let (low, high) = range.split_once("..").unwrap_or((range, range));
         let number = |text: &str| text.trim().parse::<f64>().map_err(|_| fault());
-        let parameter = Parameter::new(name.trim(), number(low)?, number(high)?)
+        let parameter = ParameterRange::new(name.trim(), number(low)?, number(high)?)
             .map_err(|e| e.at(format!("--set {set}")))?;
         if !function.parameters().contains(&parameter.name) {
             let names = function.parameters().join(", ");
@@ -291,7 +291,7 @@ fn parameters(function: &UserFunction, sets: &[String]) -> Result<Vec<Parameter>
                 parameter.name
             )));
         }
-        if given.iter().any(|other: &Parameter| other.name == parameter.name) {
+        if given.iter().any(|other: &ParameterRange| other.name == parameter.name) {
             return Err(Error::input(format!("--set {set}: \"{}\" is given twice", parameter.name)));
         }
         given.push(parameter);

@@ -131,7 +131,7 @@ fn entries() -> Result<Vec<Entry>> {
 }
 
 fn parameters(model: &Model) -> Vec<String> {
-    let line = |p: details::Parameter| {
+    let line = |p: details::ParameterEntry| {
         let default = p.default.map_or(String::new(), |default| format!(", default {default}"));
         format!("{}: {} ({}{default})", p.name, p.what, p.range)
     };

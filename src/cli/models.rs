@@ -44,7 +44,7 @@ Examples:
 Exit codes: 0 success, 1 a tolerance is missed, 2 no such model, 3 no device, 130 interrupted";
 
 /// A parameter, with its name in recipes and in `--set`.
-pub(super) struct Parameter {
+pub(super) struct ParameterEntry {
     pub name: &'static str,
     pub range: String,
     unit: &'static str,
@@ -103,7 +103,7 @@ fn list() -> Result<()> {
 fn one(model: &Model, as_json: bool) -> Result<()> {
     let (parameters, promises) = (parameters(model), promises(model));
     if as_json {
-        let parameter = |p: &Parameter| json!({ "name": p.name, "range": p.range, "unit": p.unit, "default": p.default, "what": p.what });
+        let parameter = |p: &ParameterEntry| json!({ "name": p.name, "range": p.range, "unit": p.unit, "default": p.default, "what": p.what });
         let metal = |m: &Metal| json!({ "name": m.name, "eta": m.eta, "k": m.k, "source": m.source });
         return print_json(&json!({
             "name": model.name, "summary": model.summary, "source": model.source,
@@ -117,7 +117,7 @@ fn one(model: &Model, as_json: bool) -> Result<()> {
     print(&format!("{HEADING}source{HEADING:#}  {}", model.source))?;
     print(&format!("{HEADING}parameters{HEADING:#}"))?;
     let width = column(parameters.iter().map(|parameter| parameter.name));
-    for Parameter { name, range, unit, default, what } in &parameters {
+    for ParameterEntry { name, range, unit, default, what } in &parameters {
         let default = default.as_ref().map_or("no default".into(), |default| format!("default {default}"));
         print(&format!("  {name:width$}{what}"))?;
         print(&format!(
@@ -152,11 +152,11 @@ fn column<'a>(names: impl Iterator<Item = &'a str>) -> usize {
 const DIMENSIONLESS: &str = "dimensionless";
 
 /// Lists all parameters of a model.
-pub(super) fn parameters(model: &Model) -> Vec<Parameter> {
+pub(super) fn parameters(model: &Model) -> Vec<ParameterEntry> {
     let mut all = Vec::new();
     if let Some(Shape { name, summary, unit, most, least, .. }) = model.shape {
         let values = if least > 0.0 { format!("; values from {name} = {least:e}") } else { String::new() };
-        all.push(Parameter {
+        all.push(ParameterEntry {
             name: "roughness",
             range: "[0, 1]".into(),
             unit: DIMENSIONLESS,
@@ -164,7 +164,7 @@ pub(super) fn parameters(model: &Model) -> Vec<Parameter> {
             what: format!("{summary}{values}"),
         });
         if name != "roughness" {
-            all.push(Parameter {
+            all.push(ParameterEntry {
                 name,
                 range: format!("[0, {most}]"),
                 unit: if unit.is_empty() { DIMENSIONLESS } else { unit },
@@ -173,7 +173,7 @@ pub(super) fn parameters(model: &Model) -> Vec<Parameter> {
             });
         }
     }
-    all.extend(model.parameters.iter().map(|p| Parameter {
+    all.extend(model.parameters.iter().map(|p| ParameterEntry {
         name: p.name,
         range: format!("[{}, {}]", p.range[0], p.range[1]),
         unit: if p.unit.is_empty() { DIMENSIONLESS } else { p.unit },
@@ -181,7 +181,7 @@ pub(super) fn parameters(model: &Model) -> Vec<Parameter> {
         what: p.summary.into(),
     }));
     if !model.metals().is_empty() {
-        all.push(Parameter {
+        all.push(ParameterEntry {
             name: "metal",
             range: model.metals().iter().map(|metal| metal.name).collect::<Vec<_>>().join(" | "),
             unit: "",
@@ -189,21 +189,21 @@ pub(super) fn parameters(model: &Model) -> Vec<Parameter> {
             what: "replaces eta and k, for R, G and B at 611.4, 549.1 and 464.2 nm".into(),
         });
     }
-    all.extend(model.terms().into_iter().map(|(name, terms, term)| Parameter {
+    all.extend(model.terms().into_iter().map(|(name, terms, term)| ParameterEntry {
         name,
         range: terms.iter().map(|term| term.name).collect::<Vec<_>>().join(" | "),
         unit: "",
         default: Some(term.name.into()),
         what: term.summary.into(),
     }));
-    all.extend(Compensation::is_for(model).then(|| Parameter {
+    all.extend(Compensation::is_for(model).then(|| ParameterEntry {
         name: "compensation",
         range: Compensation::ALL.map(Compensation::name).join(" | "),
         unit: "",
         default: Some(Compensation::None.name().into()),
         what: "method that restores the light lost between microfacets".into(),
     }));
-    all.extend(model.components.iter().map(|&Component { name, weight, default }| Parameter {
+    all.extend(model.components.iter().map(|&Component { name, weight, default }| ParameterEntry {
         name: weight,
         range: "[0, 1], or three for R, G, B".into(),
         unit: DIMENSIONLESS,

@@ -4,7 +4,7 @@ use crate::backend::gpu::DeviceChoice;
 use crate::base::error::{Error, Result};
 use crate::cli::watch::Watch;
 use crate::cli::{HEADING, device_json, open, print_beside, print_json, warn};
-use crate::lab::trade::{Options, Point, Trade, measure, write};
+use crate::lab::trade::{Point, Trade, TradeOptions, measure, write};
 use crate::model;
 use crate::plan::TablePlan;
 use crate::scene;
@@ -82,7 +82,7 @@ pub fn run(args: &Args) -> Result<()> {
     let say = |text: &str| print_beside(args.json, text);
     say(&format!("{HEADING}device{HEADING:#}  {line}"))?;
     let device = device_json(evaluator);
-    let options = Options { budget: args.budget, check_all: args.check == "all" };
+    let options = TradeOptions { budget: args.budget, check_all: args.check == "all" };
     let watch = Watch::new(options.steps());
     let trade = measure(&table, evaluator, &options, &watch);
     watch.finish();

@@ -21,11 +21,11 @@ pub fn clear() {
 pub struct Watch {
     bar: ProgressBar,
     start: Stopwatch,
-    step: Mutex<Progress>,
+    step: Mutex<ProgressLine>,
 }
 
 /// Counts the steps begun, and the share done of the last.
-struct Progress {
+struct ProgressLine {
     count: u64,
     share: f64,
 }
@@ -42,7 +42,7 @@ impl Watch {
         if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}  {elapsed}") {
             bar.set_style(style);
         }
-        Self { bar, start: Stopwatch::start(), step: Mutex::new(Progress { count: 0, share: 0.0 }) }
+        Self { bar, start: Stopwatch::start(), step: Mutex::new(ProgressLine { count: 0, share: 0.0 }) }
     }
 
     /// Prints while the bar is hidden.
@@ -60,7 +60,7 @@ impl Observer for Watch {
     fn begin(&self, what: &str) {
         self.bar.set_message(printable(what).into_owned());
         let mut step = self.step.lock().unwrap_or_else(PoisonError::into_inner);
-        *step = Progress { count: step.count + 1, share: 0.0 };
+        *step = ProgressLine { count: step.count + 1, share: 0.0 };
         self.bar.set_position((step.count - 1) * TICKS);
     }
 

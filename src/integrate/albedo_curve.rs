@@ -28,12 +28,12 @@ pub(super) struct AlbedoCurve {
 
 /// A Chebyshev series Σ c_k T_k(x) in a coordinate x of μ.
 struct Piece {
-    coordinate: Coordinate,
+    coordinate: CurveCoordinate,
     coefficients: Vec<f64>,
 }
 
 /// The coordinate x ∈ [−1, 1] of μ: linear in asinh(d/δ), where d is the distance of μ from grazing or from the normal.
-struct Coordinate {
+struct CurveCoordinate {
     from_normal: bool,
     delta: f64,
     middle: f64,
@@ -49,10 +49,10 @@ const AT_NORMAL: f64 = 1e-12;
 /// The number of curves that are kept: 2 MiB and less.
 const MAX_CURVES: usize = 2048;
 
-type Key = (&'static str, u64, [u64; 8]);
-static CURVES: LazyLock<Mutex<HashMap<Key, Arc<AlbedoCurve>>>> = LazyLock::new(Mutex::default);
+type CurveKey = (&'static str, u64, [u64; 8]);
+static CURVES: LazyLock<Mutex<HashMap<CurveKey, Arc<AlbedoCurve>>>> = LazyLock::new(Mutex::default);
 
-impl Coordinate {
+impl CurveCoordinate {
     fn new(from_normal: bool, delta: f64, distances: [f64; 2]) -> Self {
         let [a, b] = distances.map(|d| (d / delta).asinh());
         Self { from_normal, delta, middle: 0.5 * (a + b), half: 0.5 * (b - a) }
@@ -76,7 +76,7 @@ impl Coordinate {
 
 impl Piece {
     /// Fits a series to `loss`, with twice the points until its last coefficients are noise.
-    fn new(coordinate: Coordinate, loss: &dyn Fn(Vec<f64>) -> Vec<f64>) -> Self {
+    fn new(coordinate: CurveCoordinate, loss: &dyn Fn(Vec<f64>) -> Vec<f64>) -> Self {
         let mut points = POINTS[0];
         let mut piece = Self { coordinate, coefficients: Vec::new() };
         loop {
@@ -112,7 +112,7 @@ impl Piece {
 }
 
 /// The coefficients of the series through the values of `loss` at n Chebyshev points.
-fn coefficients(n: usize, coordinate: &Coordinate, loss: &dyn Fn(Vec<f64>) -> Vec<f64>) -> Vec<f64> {
+fn coefficients(n: usize, coordinate: &CurveCoordinate, loss: &dyn Fn(Vec<f64>) -> Vec<f64>) -> Vec<f64> {
     let angle = |k: usize| PI * (k as f64 + 0.5) / n as f64;
     // Descending in x, and so in μ but where that is 1 less a distance.
     let mut mus: Vec<_> = (0..n).map(|k| coordinate.mu(angle(k).cos())).collect();
@@ -153,11 +153,11 @@ impl AlbedoCurve {
             // μ from 2⁻²⁴ to 1 spans decades whatever α is, since E is not analytic at 0.
             None => {
                 let delta = (1e-3 * setting.alpha).clamp(4.0 * MU_MIN, 1e-4);
-                (Piece::new(Coordinate::new(false, delta, [MU_MIN, 1.0]), &loss), None)
+                (Piece::new(CurveCoordinate::new(false, delta, [MU_MIN, 1.0]), &loss), None)
             }
             Some(seam) => {
-                let below = Coordinate::new(false, 4.0 * MU_MIN, [MU_MIN, seam]);
-                let above = Coordinate::new(true, AT_NORMAL, [0.0, 1.0 - seam]);
+                let below = CurveCoordinate::new(false, 4.0 * MU_MIN, [MU_MIN, seam]);
+                let above = CurveCoordinate::new(true, AT_NORMAL, [0.0, 1.0 - seam]);
                 (Piece::new(below, &loss), Some((seam, Piece::new(above, &loss))))
             }
         };
@@ -210,7 +210,7 @@ impl AlbedoCurve {
     /// The μ at which 1 − E(μ) crosses a level, by bisection.
     fn at_level(&self, level: f64) -> Vec<f64> {
         const STEPS: usize = 256;
-        let coordinate = Coordinate::new(false, self.delta(), [MU_MIN, 1.0]);
+        let coordinate = CurveCoordinate::new(false, self.delta(), [MU_MIN, 1.0]);
         let above = |mu: f64| self.signed(mu) > level;
         let mu = |k: usize| coordinate.mu(2.0 * k as f64 / STEPS as f64 - 1.0);
         let mut found = Vec::new();

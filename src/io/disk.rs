@@ -161,7 +161,7 @@ pub(super) mod faults {
 
     /// What happens at an operation.
     #[derive(Debug, Clone, Copy, PartialEq)]
-    pub enum Fault {
+    pub enum DiskFault {
         /// It fails, and the process goes on.
         Error,
         /// Nothing is done any more, as if the process had been killed.
@@ -170,11 +170,11 @@ pub(super) mod faults {
 
     thread_local! {
         static STEPS: Cell<usize> = const { Cell::new(0) };
-        static PLAN: Cell<Option<(usize, Fault)>> = const { Cell::new(None) };
+        static PLAN: Cell<Option<(usize, DiskFault)>> = const { Cell::new(None) };
     }
 
     /// Runs `work` with a fault at its `n`-th operation. Returns also whether it got so far.
-    pub fn run<T>(n: usize, fault: Fault, work: impl FnOnce() -> T) -> (T, bool) {
+    pub fn run<T>(n: usize, fault: DiskFault, work: impl FnOnce() -> T) -> (T, bool) {
         STEPS.set(0);
         PLAN.set(Some((n, fault)));
         let result = work();
@@ -185,8 +185,8 @@ pub(super) mod faults {
     pub fn step() -> io::Result<()> {
         let step = STEPS.replace(STEPS.get() + 1);
         match PLAN.get() {
-            Some((n, Fault::Error)) if step == n => Err(io::Error::other("a fault of the test")),
-            Some((n, Fault::Kill)) if step >= n => Err(io::Error::other("the test killed the process")),
+            Some((n, DiskFault::Error)) if step == n => Err(io::Error::other("a fault of the test")),
+            Some((n, DiskFault::Kill)) if step >= n => Err(io::Error::other("the test killed the process")),
             _ => Ok(()),
         }
     }

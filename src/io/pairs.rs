@@ -201,12 +201,12 @@ impl Number {
 }
 
 /// What is wrong with a header.
-enum Fault {
+enum PairFault {
     Io(io::Error),
     Format(String),
 }
 
-impl Fault {
+impl PairFault {
     fn explain(self, path: &Path) -> Error {
         match self {
             Self::Io(error) if error.kind() != ErrorKind::UnexpectedEof => Error::io("read", path)(error),
@@ -217,15 +217,15 @@ impl Fault {
 }
 
 /// Numbers and rows of an (n, 4) array in C order: numpy.org, "numpy.lib.format".
-fn npy_header(file: &mut impl Read) -> Result<(Number, u64), Fault> {
+fn npy_header(file: &mut impl Read) -> Result<(Number, u64), PairFault> {
     /// Longer headers are of records, or hostile.
     const LONGEST: usize = 1 << 16;
-    let mut array = |n: usize| -> Result<Vec<u8>, Fault> {
+    let mut array = |n: usize| -> Result<Vec<u8>, PairFault> {
         let mut bytes = vec![0; n];
-        file.read_exact(&mut bytes).map_err(Fault::Io)?;
+        file.read_exact(&mut bytes).map_err(PairFault::Io)?;
         Ok(bytes)
     };
-    let fault = |why: &str| Fault::Format(why.into());
+    let fault = |why: &str| PairFault::Format(why.into());
     if array(6)? != b"\x93NUMPY" {
         return Err(fault("it is not an NPY file; write it with numpy.save"));
     }
@@ -233,7 +233,9 @@ fn npy_header(file: &mut impl Read) -> Result<(Number, u64), Fault> {
         1 => 2,
         2 | 3 => 4,
         version => {
-            return Err(Fault::Format(format!("NPY version {version} is unknown; write version 1, 2 or 3")));
+            return Err(PairFault::Format(format!(
+                "NPY version {version} is unknown; write version 1, 2 or 3"
+            )));
         }
     };
     let length = array(length_bytes)?.iter().rev().fold(0, |n: usize, &byte| n << 8 | usize::from(byte));
@@ -245,7 +247,7 @@ fn npy_header(file: &mut impl Read) -> Result<(Number, u64), Fault> {
     let value = |key: &str| {
         let rest = ["'", "\""].iter().find_map(|quote| header.split_once(&format!("{quote}{key}{quote}")));
         let rest = rest.and_then(|(_, rest)| rest.trim_start().strip_prefix(':'));
-        rest.map(str::trim_start).ok_or_else(|| Fault::Format(format!("its NPY header has no {key}")))
+        rest.map(str::trim_start).ok_or_else(|| PairFault::Format(format!("its NPY header has no {key}")))
     };
 
     let kind = value("descr")?;
@@ -257,7 +259,9 @@ fn npy_header(file: &mut impl Read) -> Result<(Number, u64), Fault> {
         ">f4" => Number { bytes: 4, big_endian: true },
         _ => {
             let kind: String = kind.chars().take(40).collect();
-            return Err(Fault::Format(format!("its numbers are of type {kind}; give float64 or float32")));
+            return Err(PairFault::Format(format!(
+                "its numbers are of type {kind}; give float64 or float32"
+            )));
         }
     };
     let tuple = value("shape")?.strip_prefix('(').and_then(|rest| rest.split_once(')'));
@@ -267,7 +271,7 @@ fn npy_header(file: &mut impl Read) -> Result<(Number, u64), Fault> {
         [rows, "4"] => rows.parse().ok(),
         _ => None,
     };
-    let rows = rows.ok_or_else(|| Fault::Format(format!("its shape is ({tuple}); give (n, 4)")))?;
+    let rows = rows.ok_or_else(|| PairFault::Format(format!("its shape is ({tuple}); give (n, 4)")))?;
     if !value("fortran_order")?.starts_with("False") {
         return Err(fault("it is in Fortran order; write it with numpy.ascontiguousarray"));
     }

@@ -70,7 +70,7 @@ pub(crate) struct Row {
 
 /// A column of a map.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Column {
+pub(crate) struct MapColumn {
     /// (cos, sin) of ψ in its middle.
     pub middle: [f64; 2],
     /// ∫ (cos ψ, sin ψ) dψ over it.
@@ -84,7 +84,7 @@ pub(crate) type Sums = [[f64; 3]; 3];
 pub(crate) struct PreparedMap<'a> {
     pub map: Cow<'a, Environment>,
     pub rows: Vec<Row>,
-    pub columns: Vec<Column>,
+    pub columns: Vec<MapColumn>,
     /// Columns between sums that are kept.
     pub block: usize,
     /// For each row, the sums of the first 0, `block`, 2 `block`, … columns.
@@ -98,7 +98,7 @@ pub(crate) struct PreparedMap<'a> {
 
 /// A normal in the map's frame.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Normal {
+pub(crate) struct SurfaceNormal {
     pub n: [f64; 3],
     /// sin θn.
     pub sin: f64,
@@ -122,7 +122,7 @@ impl<'a> PreparedMap<'a> {
         };
         let column = |k: usize| {
             let psi = [map.psi(k), map.psi(k + 1)];
-            Column { middle: cos_sin(0.5 * (psi[0] + psi[1])), chord: chord(psi) }
+            MapColumn { middle: cos_sin(0.5 * (psi[0] + psi[1])), chord: chord(psi) }
         };
         let rows = (0..map.height()).map(row).collect();
         let columns: Vec<_> = (0..map.width()).map(column).collect();
@@ -150,10 +150,10 @@ impl<'a> PreparedMap<'a> {
     }
 
     /// A unit vector of the world.
-    pub fn normal(&self, world: [f64; 3]) -> Normal {
+    pub fn normal(&self, world: [f64; 3]) -> SurfaceNormal {
         let n = self.map.turn(world);
         let place = n[1].atan2(n[0]).rem_euclid(TAU) / self.step;
-        Normal { n, sin: n[0].hypot(n[1]), place }
+        SurfaceNormal { n, sin: n[0].hypot(n[1]), place }
     }
 
     /// What roundings of a unit roundoff may cost E, R, G, B: of ∫ L dω, as n·ω is that of vectors of length 1, and near the
@@ -202,7 +202,7 @@ impl<'a> PreparedMap<'a> {
     }
 
     /// What a row sends.
-    fn row(&self, normal: &Normal, row: usize, split: u32) -> [f64; 3] {
+    fn row(&self, normal: &SurfaceNormal, row: usize, split: u32) -> [f64; 3] {
         let [inner, outer] = self.reach(normal, row);
         // Columns first..last are above. The others have at most one piece each side of the normal's azimuth.
         let sure = (inner - self.margin).max(0.0);
@@ -234,7 +234,7 @@ impl<'a> PreparedMap<'a> {
 
     /// Up to how many columns on each side of the normal's azimuth all of a row is above the surface, and beyond how many
     /// all is below: n·ω = 0 at cos(ψ − ψn) = −cot θn cot θ.
-    fn reach(&self, normal: &Normal, row: usize) -> [f64; 2] {
+    fn reach(&self, normal: &SurfaceNormal, row: usize) -> [f64; 2] {
         let reach = |[c, s]: [f64; 2]| {
             let x = -normal.n[2] * c / (normal.sin * s).max(TINY);
             x.clamp(-1.0, 1.0).acos() / self.step
@@ -267,7 +267,7 @@ impl<'a> PreparedMap<'a> {
     /// `outer` crossed. These are columns from that azimuth; offsets are columns from the cell's middle, away from it.
     fn column(
         &self,
-        normal: &Normal,
+        normal: &SurfaceNormal,
         row: usize,
         (k, column): (i64, usize),
         side: f64,
@@ -293,7 +293,7 @@ impl<'a> PreparedMap<'a> {
     }
 
     /// ∫ max(0, n·ω) sin θ dθ over a row, n·ω = nz cos θ + B sin θ.
-    fn meridian(&self, normal: &Normal, row: usize, b: f64) -> f64 {
+    fn meridian(&self, normal: &SurfaceNormal, row: usize, b: f64) -> f64 {
         let [cos, sin] = self.rows[row].middle;
         let z = normal.n[2];
         let height = (z * cos + b * sin) / z.hypot(b).max(TINY);
@@ -326,7 +326,7 @@ fn turned([c, s]: [f64; 2], by: f64) -> [f64; 2] {
     [c * cos - s * sin, s * cos + c * sin]
 }
 
-fn add(sums: &mut Sums, texel: [f32; 3], column: &Column, step: f64) {
+fn add(sums: &mut Sums, texel: [f32; 3], column: &MapColumn, step: f64) {
     for (sum, factor) in sums.iter_mut().zip([column.chord[0], column.chord[1], step]) {
         (0..3).for_each(|c| sum[c] += f64::from(texel[c]) * factor);
     }

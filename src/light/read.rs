@@ -39,7 +39,7 @@ pub struct MapFile {
 }
 
 /// Texels of a file, row by row from the top, R, G, B.
-struct Picture {
+struct MapPicture {
     width: usize,
     height: usize,
     texels: Vec<[f32; 3]>,
@@ -52,7 +52,7 @@ struct Picture {
 /// When the file is not such a map, is cut short, has too many texels, or texels that are no radiance.
 pub fn read(path: &Path, invalid: InvalidTexels) -> Result<MapFile> {
     read_picture(path)
-        .and_then(|Picture { width, height, texels, notes }| {
+        .and_then(|MapPicture { width, height, texels, notes }| {
             let (map, clamped) = match invalid {
                 InvalidTexels::Clamp => Environment::clamped(width, height, texels)?,
                 InvalidTexels::Refuse { remedy } => {
@@ -64,7 +64,7 @@ pub fn read(path: &Path, invalid: InvalidTexels) -> Result<MapFile> {
         .map_err(|error| error.at(path.display()))
 }
 
-fn read_picture(path: &Path) -> Result<Picture> {
+fn read_picture(path: &Path) -> Result<MapPicture> {
     let mut file = File::open(path).map_err(Error::io("read", path))?;
     let bytes = file.metadata().map_err(Error::io("read", path))?.len();
     if bytes > MAX_BYTES {

@@ -11,7 +11,7 @@ use crate::base::tolerance::{decade, is_fine};
 use crate::model::SlopeCounts;
 use crate::model::directions::{Fixed, Sample};
 use crate::model::masking::Masking;
-use crate::model::ndf::{Map, Ndf};
+use crate::model::ndf::{MappedSlope, Ndf};
 use crate::model::parameters::Setting;
 use crate::model::slope_azimuths::{Turn, turn_of, turn_scale, turns};
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -128,7 +128,7 @@ pub(super) fn samples_with<N: Ndf>(
 }
 
 /// D cos θm dωm = m weight dr dφ/2π
-fn normal<N: Ndf>(Map { p, m, weight }: Map, s: &Setting) -> Normal {
+fn normal<N: Ndf>(MappedSlope { p, m, weight }: MappedSlope, s: &Setting) -> Normal {
     let h2 = m * m + p * p;
     let half = Half { ht2: p * p, h2, c: 1.0, one_minus_c: 0.0 };
     Normal { p, m, solid_angle: weight * h2.sqrt() / N::ndf(&half, m * m, s) }

@@ -34,7 +34,7 @@ use crate::model::ndf::ggx::Ggx;
 use crate::model::ndf::gtr::Gtr;
 use crate::model::ndf::stretched::Stretched;
 use crate::model::ndf::student_t::StudentT;
-use crate::model::ndf::{Directions, Draw, Map, Maps, Ndf, Rule};
+use crate::model::ndf::{CountRule, Directions, Draw, MappedSlope, Maps, Ndf};
 use crate::model::parameters::{Parameters, Setting};
 use crate::model::{
     Branches, Integral, Metal, Model, Parameter, Part, Sampling, SlopeCounts, SlopeMap, Slopes, Term, mirror,
@@ -96,7 +96,7 @@ macro_rules! parts {
             LazyLock::new(|| [$(with_maskings::<$ndf>()),*].into_iter().flatten().collect());
 
         /// The ideal mirror with every Fresnel term.
-        pub static MIRRORS: LazyLock<Vec<Model>> = LazyLock::new(|| vec![$(named(mirror::Made::<$fresnel>::MODEL, &[])),*]);
+        pub static MIRRORS: LazyLock<Vec<Model>> = LazyLock::new(|| vec![$(named(mirror::MirrorOf::<$fresnel>::MODEL, &[])),*]);
     };
 }
 
@@ -292,13 +292,16 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
     ];
 
     /// The node counts of all three, if all have them.
-    const COUNTS: Option<(Rule, masking::Counts, fresnel::Counts)> = match (N::RULE, M::COUNTS, F::COUNTS) {
-        (Some(ndf), Some(masking), Some(fresnel)) => Some((ndf, masking, fresnel)),
-        _ => None,
-    };
+    const COUNTS: Option<(CountRule, masking::MaskingCounts, fresnel::FresnelCounts)> =
+        match (N::RULE, M::COUNTS, F::COUNTS) {
+            (Some(ndf), Some(masking), Some(fresnel)) => Some((ndf, masking, fresnel)),
+            _ => None,
+        };
 
     const SLOPES: Option<Slopes> = match (N::MAPS, Self::COUNTS) {
-        (Some(maps), Some((Rule { kernels: Some(kernels), branches, .. }, ..))) if M::OF_NORMAL.is_none() => {
+        (Some(maps), Some((CountRule { kernels: Some(kernels), branches, .. }, ..)))
+            if M::OF_NORMAL.is_none() =>
+        {
             Some(Self::slopes(maps, kernels, branches))
         }
         _ => None,
@@ -459,7 +462,7 @@ impl<N: Ndf, M: Masking> Facets<N, M> {
     #[inline(never)]
     fn integrand(at: MapAt, [mu_c, t_max, t_max_inverse]: [f64; 3], mu_e: f64, s: &Setting) -> [f64; 2] {
         let Some(maps) = N::MAPS else { return [f64::NAN; 2] };
-        let Map { p, m, weight } = match at {
+        let MappedSlope { p, m, weight } = match at {
             MapAt::Coarse(r) => (maps.coarse.map)(r, s),
             MapAt::Fine(r) => (maps.fine.map)(r, s),
         };

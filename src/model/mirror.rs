@@ -21,13 +21,13 @@ pub(crate) static MODEL: Model = Model {
     summary: "the ideal mirror, a delta: no values, integrals in closed form; Schlick's Fresnel",
     source: "f = F δ(θi − θe) δ(φi + π − φe) / (cos θi sin θi); Schlick 1994, eq. 15",
     components: &Component::schlick(1.0),
-    ..Made::<Schlick>::MODEL
+    ..MirrorOf::<Schlick>::MODEL
 };
 
 /// The mirror with a Fresnel term.
-pub(super) struct Made<F>(PhantomData<F>);
+pub(super) struct MirrorOf<F>(PhantomData<F>);
 
-impl<F: Fresnel> Made<F> {
+impl<F: Fresnel> MirrorOf<F> {
     pub const MODEL: Model = Model {
         name: TERM.name,
         summary: TERM.summary,

@@ -9,7 +9,7 @@ pub struct Formula(Vec<Monomial>);
 #[derive(Debug, Clone, PartialEq)]
 struct Monomial {
     number: f64,
-    terms: Vec<Term>,
+    terms: Vec<FormulaTerm>,
 }
 
 /// A material's quantity: its factor, and the least value that textures leave of it.
@@ -25,7 +25,7 @@ pub struct FormulaInput {
 
 /// x, max(x) over the channels, or what either leaves of 1.
 #[derive(Debug, Clone, PartialEq)]
-struct Term {
+struct FormulaTerm {
     of: FormulaInput,
     is_max: bool,
     is_rest: bool,
@@ -72,7 +72,10 @@ impl FormulaInput {
     }
 
     fn term(&self, is_max: bool, is_rest: bool) -> Formula {
-        Formula(vec![Monomial { number: 1.0, terms: vec![Term { of: self.clone(), is_max, is_rest }] }])
+        Formula(vec![Monomial {
+            number: 1.0,
+            terms: vec![FormulaTerm { of: self.clone(), is_max, is_rest }],
+        }])
     }
 }
 
@@ -114,7 +117,7 @@ impl Formula {
 
     /// Evaluates R, G and B with these values for some quantities, and the stored values for the others.
     pub fn at(&self, given: &dyn Fn(&str) -> Option<f64>) -> [f64; 3] {
-        let evaluate = |term: &Term| term.of(given(term.of.name).map_or(term.of.value, |x| [x; 3]));
+        let evaluate = |term: &FormulaTerm| term.of(given(term.of.name).map_or(term.of.value, |x| [x; 3]));
         let product = |product: &Monomial| {
             product
                 .terms
@@ -128,7 +131,8 @@ impl Formula {
 
     /// Returns its largest possible value.
     pub fn maximum(&self) -> f64 {
-        let product = |p: &Monomial| p.terms.iter().map(Term::maximum).fold(p.number.max(0.0), |a, b| a * b);
+        let product =
+            |p: &Monomial| p.terms.iter().map(FormulaTerm::maximum).fold(p.number.max(0.0), |a, b| a * b);
         self.0.iter().map(product).sum()
     }
 
@@ -141,16 +145,16 @@ impl Formula {
 impl Monomial {
     /// The number that stands before its words.
     fn number(&self) -> f64 {
-        self.terms.iter().filter_map(Term::folded).fold(self.number, |a, b| a * b)
+        self.terms.iter().filter_map(FormulaTerm::folded).fold(self.number, |a, b| a * b)
     }
 
     fn is_zero(&self) -> bool {
-        let constant = |term: &&Term| !term.of.varies();
+        let constant = |term: &&FormulaTerm| !term.of.varies();
         self.number == 0.0 || self.terms.iter().filter(constant).any(|t| t.of(t.of.value) == [0.0; 3])
     }
 }
 
-impl Term {
+impl FormulaTerm {
     fn of(&self, value: [f64; 3]) -> [f64; 3] {
         let max = value.into_iter().fold(0.0, f64::max);
         let value = if self.is_max { [max; 3] } else { value };
@@ -193,7 +197,7 @@ impl fmt::Display for Formula {
         for product in self.0.iter().filter(|product| product.number() != 0.0) {
             let number = short(product.number());
             let named = product.terms.iter().filter(|term| term.folded().is_none());
-            let mut words: Vec<_> = named.map(Term::words).collect();
+            let mut words: Vec<_> = named.map(FormulaTerm::words).collect();
             if number.abs() != 1.0 || words.is_empty() {
                 words.insert(0, number.abs().to_string());
             }

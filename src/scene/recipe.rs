@@ -13,7 +13,7 @@ use crate::table::quantity;
 use crate::table::quantity::{QUANTITIES, Quantity};
 use crate::table::rule::{MAX_GAUSS, MAX_GRID, MAX_SAMPLES, Rule};
 use crate::table::storage::Storage;
-use document::{Document, Fields, Item};
+use document::{Document, Item, TableFields};
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fs::File;
 use std::io::Read;
@@ -170,7 +170,7 @@ fn lobe(item: Item) -> Result<MaterialLobe> {
 const COMPENSATION: &str = "compensation";
 
 /// `compensation = "kulla-conty"`
-fn compensation(fields: &Fields, model: &'static Model) -> Result<Compensation> {
+fn compensation(fields: &TableFields, model: &'static Model) -> Result<Compensation> {
     let Some(item) = fields.get(COMPENSATION) else { return Ok(Compensation::None) };
     if !Compensation::is_for(model) {
         return Err(item.refuse(&format!("{} is no lobe of microfacets; leave this away", model.name)));
@@ -198,7 +198,7 @@ fn channels(item: Item, range: [f64; 2]) -> Result<[f64; 3]> {
 
 /// `roughness = r`, or the model's own measure of it in its place, as `alpha = r²`; `roughness = [a, b]` is a
 /// material that varies.
-fn roughness(fields: &Fields, shape: &Shape) -> Result<Option<Distribution>> {
+fn roughness(fields: &TableFields, shape: &Shape) -> Result<Option<Distribution>> {
     let measure = fields.get(shape.name).filter(|_| shape.name != "roughness");
     match (fields.get("roughness"), measure) {
         (Some(_), Some(measure)) => {
@@ -321,7 +321,10 @@ fn quantity_of(item: &Item) -> Result<&'static Quantity> {
 }
 
 /// What the table is of, and whether it can have a roughness axis; if not, why.
-fn subject<'a>(fields: &Fields<'a>, known: &Known<'a>) -> Result<(SubjectRequest, Result<(), &'static str>)> {
+fn subject<'a>(
+    fields: &TableFields<'a>,
+    known: &Known<'a>,
+) -> Result<(SubjectRequest, Result<(), &'static str>)> {
     const FIXED: &str = "the table has one roughness already; leave that or this axis away";
     const NONE: &str = "the table's model has no roughness; leave this axis away";
     let has = |material: &Material, test: fn(&Distribution) -> bool| {
@@ -382,7 +385,7 @@ fn subject<'a>(fields: &Fields<'a>, known: &Known<'a>) -> Result<(SubjectRequest
 }
 
 /// `model = "ggx"`, and where it is made of terms those that stand beside it: `masking`, `fresnel`.
-fn model(fields: &Fields, item: Item) -> Result<&'static Model> {
+fn model(fields: &TableFields, item: Item) -> Result<&'static Model> {
     let named = item.text().ok().and_then(|name| model::find(name).ok());
     let model = named.map_or_else(|| item.one_of(MODELS.iter().map(|&model| (model.name, model))), Ok)?;
     let terms = model.terms();
@@ -406,7 +409,7 @@ fn model(fields: &Fields, item: Item) -> Result<&'static Model> {
 }
 
 /// `alpha = [x, y]` along the tangent and the bitangent: their aspect, x/y, a parameter of anisotropic models.
-fn aspect(fields: &Fields, model: &Model) -> Result<Option<(String, f64)>> {
+fn aspect(fields: &TableFields, model: &Model) -> Result<Option<(String, f64)>> {
     let Some(parameter) = model.parameters.iter().find(|p| model.is_anisotropic() && p.name == "aspect")
     else {
         return Ok(None);
@@ -456,7 +459,7 @@ fn check_names(tables: &[TableRequest]) -> Result<()> {
 
 /// `rule = "warped"`, or `rule = { NAME = [n_theta, n_phi] }`, or `rule = { NAME = samples }`; also
 /// `grid = [n_theta, n_phi]`.
-fn rule(fields: &Fields) -> Result<Option<Rule>> {
+fn rule(fields: &TableFields) -> Result<Option<Rule>> {
     let nodes = |item: Item, most| -> Result<[usize; 2]> {
         let [theta, phi] = pair(item)?;
         Ok([theta.count(most)?, phi.count(most)?])
@@ -513,7 +516,7 @@ fn auto_range(item: &Item<'_>, variable: Variable) -> Result<Option<Option<[f64;
 }
 
 /// The roughness that the table's material takes, where it is one that varies.
-fn varying_roughness(fields: &Fields, known: &Known, variable: Variable) -> Option<[f64; 2]> {
+fn varying_roughness(fields: &TableFields, known: &Known, variable: Variable) -> Option<[f64; 2]> {
     let name = fields.get("material").filter(|_| variable == Variable::Roughness)?.text().ok()?;
     let material = known.by_name.get(name)?;
     let all = Distribution::union(material.lobes.iter().filter_map(|lobe| lobe.roughness.as_ref()))?;

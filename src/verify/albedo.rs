@@ -8,7 +8,7 @@ use crate::verify::inputs::{settings, thetas};
 use crate::verify::probe::Probe;
 use crate::verify::report::Finding;
 use crate::verify::sequence::Chance;
-use crate::verify::{Parameter, Subject};
+use crate::verify::{ParameterRange, Subject};
 use std::f64::consts::FRAC_PI_2;
 
 /// Settings of the scan.
@@ -63,7 +63,7 @@ pub(super) fn check(
 
 /// Each parameter between its ends, the others at their upper ones: ρ_dh is linear in weights, so that a gain
 /// between the ends of a shape shows with all weights at their most, and may show nowhere else.
-pub(super) fn sweeps(parameters: &[Parameter]) -> impl Iterator<Item = Vec<f64>> {
+pub(super) fn sweeps(parameters: &[ParameterRange]) -> impl Iterator<Item = Vec<f64>> {
     let free = (0..parameters.len()).filter(|&k| parameters[k].low < parameters[k].high);
     free.flat_map(move |k| {
         (1..SWEEP).map(move |j| {
@@ -101,11 +101,16 @@ fn largest(places: &[Incidence]) -> Option<&Incidence> {
 }
 
 /// A place's setting, and others near it.
-fn around(place: &Incidence, parameters: &[Parameter], distance: f64, chance: &mut Chance) -> Vec<Vec<f64>> {
+fn around(
+    place: &Incidence,
+    parameters: &[ParameterRange],
+    distance: f64,
+    chance: &mut Chance,
+) -> Vec<Vec<f64>> {
     let mut settings = vec![place.setting.clone()];
     if parameters.iter().any(|parameter| parameter.low < parameter.high) {
         settings.extend((0..AROUND).map(|_| {
-            let near = |(parameter, &value): (&Parameter, &f64)| {
+            let near = |(parameter, &value): (&ParameterRange, &f64)| {
                 let u = parameter.place(value) + distance * (2.0 * chance.uniform() - 1.0);
                 parameter.at(u.clamp(0.0, 1.0))
             };

@@ -20,7 +20,7 @@ use crate::verify::probe::{Probe, is_non_finite};
 use crate::verify::report::Finding;
 use crate::verify::search::Worst;
 use crate::verify::sequence::Chance;
-use crate::verify::{Angles, Options};
+use crate::verify::{Angles, VerifyOptions};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 pub(super) const NAME: &str = "energy";
@@ -63,7 +63,7 @@ pub(super) struct Incidence {
 
 pub(super) fn check(
     probe: &mut Probe,
-    options: &Options,
+    options: &VerifyOptions,
     tolerance: f64,
     observer: &dyn Observer,
 ) -> Result<Finding> {

@@ -2,7 +2,7 @@
 //! low-discrepancy angles that crowd where BRDFs break.
 
 use crate::verify::sequence::Recurrence;
-use crate::verify::{Angles, Parameter};
+use crate::verify::{Angles, ParameterRange};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 pub(super) struct Inputs {
@@ -18,7 +18,7 @@ pub(super) struct Inputs {
 const SETTINGS: u64 = 256;
 
 impl Inputs {
-    pub fn new(parameters: &[Parameter], budget: u64) -> Self {
+    pub fn new(parameters: &[ParameterRange], budget: u64) -> Self {
         let grid = grid();
         let most = (budget / (3 * grid.len() as u64)).clamp(4, SETTINGS);
         Self { settings: settings(parameters, most as usize), grid, budget, recurrence: Recurrence::new(4) }
@@ -36,7 +36,7 @@ impl Inputs {
 
 /// Both ends of each parameter with those of the others (with many parameters one at a time), and a
 /// low-discrepancy set between, so many in all.
-pub(super) fn settings(parameters: &[Parameter], most: usize) -> Vec<Vec<f64>> {
+pub(super) fn settings(parameters: &[ParameterRange], most: usize) -> Vec<Vec<f64>> {
     let free: Vec<_> = (0..parameters.len()).filter(|&k| parameters[k].low < parameters[k].high).collect();
     let setting = |u: &dyn Fn(usize) -> f64| -> Vec<f64> {
         parameters.iter().enumerate().map(|(k, parameter)| parameter.at(u(k))).collect()

@@ -46,7 +46,7 @@ use probe::Probe;
 
 /// A parameter of a subject, and where it is checked.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Parameter {
+pub struct ParameterRange {
     /// Its name.
     pub name: String,
     /// The range, both ends included; equal where it is fixed.
@@ -57,7 +57,7 @@ pub struct Parameter {
     pub logarithmic: bool,
 }
 
-impl Parameter {
+impl ParameterRange {
     /// A parameter over a range, logarithmic where it spans two decades or more.
     ///
     /// # Errors
@@ -98,7 +98,7 @@ pub trait Subject {
     fn name(&self) -> String;
 
     /// Its parameters, in the order of a setting.
-    fn parameters(&self) -> &[Parameter];
+    fn parameters(&self) -> &[ParameterRange];
 
     /// Values for each pair of directions, 1 to 3.
     fn channels(&self) -> usize;
@@ -120,7 +120,7 @@ pub trait Subject {
 
     /// The ranges over which it integrates, in the order of [`Subject::parameters`]: wider where a limit is a
     /// delta, which has integrals but no values.
-    fn integral_parameters(&self) -> &[Parameter] {
+    fn integral_parameters(&self) -> &[ParameterRange] {
         self.parameters()
     }
 
@@ -224,7 +224,7 @@ pub struct Declared {
 
 /// How hard to look.
 #[derive(Debug, Clone, Copy)]
-pub struct Options {
+pub struct VerifyOptions {
     /// About how many values to look at before the search. A count and not a time, so that no result depends
     /// on the clock.
     pub budget: u64,
@@ -232,7 +232,7 @@ pub struct Options {
     pub search: bool,
 }
 
-impl Default for Options {
+impl Default for VerifyOptions {
     fn default() -> Self {
         Self { budget: DEFAULT_BUDGET, search: true }
     }
@@ -267,7 +267,7 @@ trait Property {
 /// # Errors
 /// When the subject cannot be evaluated, or the observer stops it; a broken promise is no error but a
 /// [`Finding`] of the report.
-pub fn check(subject: &mut dyn Subject, options: &Options, observer: &dyn Observer) -> Result<Report> {
+pub fn check(subject: &mut dyn Subject, options: &VerifyOptions, observer: &dyn Observer) -> Result<Report> {
     let (symmetry, tolerances) = (subject.symmetry(), subject.tolerances());
     let declared = subject.declared().to_vec();
     let mut probe = Probe::new(subject);

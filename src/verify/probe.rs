@@ -2,7 +2,7 @@
 
 use crate::base::error::{Error, Result};
 use crate::verify::search::Worst;
-use crate::verify::{Angles, Parameter, Subject};
+use crate::verify::{Angles, ParameterRange, Subject};
 
 /// A subject under test.
 pub(super) struct Probe<'a> {
@@ -47,7 +47,7 @@ impl<'a> Probe<'a> {
         }
     }
 
-    pub fn parameters(&self) -> &[Parameter] {
+    pub fn parameters(&self) -> &[ParameterRange] {
         self.subject.parameters()
     }
 

@@ -5,7 +5,7 @@ use crate::base::error::Result;
 use crate::verify::inputs::Inputs;
 use crate::verify::probe::Probe;
 use crate::verify::sequence::Chance;
-use crate::verify::{Angles, Parameter, Property};
+use crate::verify::{Angles, ParameterRange, Property};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// An input and how far it is from a promise.
@@ -120,7 +120,7 @@ struct Seeds(Vec<Worst>);
 
 impl Seeds {
     /// Takes an input if it is among the worst, in the place of lesser ones near it.
-    fn add(&mut self, worst: Worst, parameters: &[Parameter]) -> bool {
+    fn add(&mut self, worst: Worst, parameters: &[ParameterRange]) -> bool {
         let place = Coordinates::of(&worst, parameters);
         let near = |other: &Worst| Coordinates::of(other, parameters).distance(&place) < APART;
         if self.0.iter().any(|other| other.deviation >= worst.deviation && near(other)) {
@@ -191,7 +191,7 @@ struct Coordinates {
 }
 
 impl Coordinates {
-    fn of(worst: &Worst, parameters: &[Parameter]) -> Self {
+    fn of(worst: &Worst, parameters: &[ParameterRange]) -> Self {
         let Angles { theta_i, phi_i, theta_e, phi_e } = worst.angles;
         Self {
             angles: [theta_i / FRAC_PI_2, phi_i / PI, theta_e / FRAC_PI_2, wrap((phi_e - phi_i - PI) / PI)],

@@ -18,7 +18,7 @@ use crate::table::Table;
 use crate::table::axis::{Axis, Variable};
 use crate::table::quantity::FixedDirection;
 use crate::table::quantity::RHO_DH;
-use crate::verify::{Angles, Declared, FAINT, Parameter, Subject, Symmetry, Tolerances, albedo};
+use crate::verify::{Angles, Declared, FAINT, ParameterRange, Subject, Symmetry, Tolerances, albedo};
 use std::cell::OnceCell;
 use std::f64::consts::FRAC_PI_2;
 
@@ -30,8 +30,8 @@ pub struct Sum<'a> {
     name: String,
     evaluator: &'a Evaluator,
     /// As given, for integrals; and the part of it that has values.
-    whole: Vec<Parameter>,
-    parameters: Vec<Parameter>,
+    whole: Vec<ParameterRange>,
+    parameters: Vec<ParameterRange>,
     lobes: LobesAt<'a>,
     declared: Vec<Declared>,
     points: Option<Points<'a>>,
@@ -58,7 +58,7 @@ impl<'a> Sum<'a> {
     pub fn material(evaluator: &'a Evaluator, material: &'a Material) -> Result<Self> {
         let varying = material.varying();
         let names: Vec<_> = varying.iter().map(|(name, _)| name.clone()).collect();
-        let parameters = varying.into_iter().map(|(name, [low, high])| Parameter::new(name, low, high));
+        let parameters = varying.into_iter().map(|(name, [low, high])| ParameterRange::new(name, low, high));
         let lobes = move |setting: &[f64]| {
             let setting: Vec<_> = names.iter().cloned().zip(setting.iter().copied()).collect();
             constant_lobes(&material.at(&setting)?).map_err(Error::input)
@@ -73,7 +73,7 @@ impl<'a> Sum<'a> {
     ///
     /// # Errors
     /// When the model has no parameter of such a name, or the device fails.
-    pub fn model(evaluator: &'a Evaluator, lobe: Lobe, parameters: Vec<Parameter>) -> Result<Self> {
+    pub fn model(evaluator: &'a Evaluator, lobe: Lobe, parameters: Vec<ParameterRange>) -> Result<Self> {
         Self::compensated(evaluator, lobe, Compensation::None, parameters)
     }
 
@@ -85,7 +85,7 @@ impl<'a> Sum<'a> {
         evaluator: &'a Evaluator,
         lobe: Lobe,
         compensation: Compensation,
-        parameters: Vec<Parameter>,
+        parameters: Vec<ParameterRange>,
     ) -> Result<Self> {
         let model = lobe.model();
         let known = |name: &str| {
@@ -118,7 +118,7 @@ impl<'a> Sum<'a> {
     fn new(
         name: String,
         evaluator: &'a Evaluator,
-        whole: Vec<Parameter>,
+        whole: Vec<ParameterRange>,
         lobes: LobesAt<'a>,
         mut violations: Vec<Violation>,
     ) -> Result<Self> {
@@ -162,7 +162,7 @@ impl<'a> Sum<'a> {
     /// Both ends of each parameter with those of the others.
     fn corners(&self) -> impl Iterator<Item = Vec<f64>> {
         (0..1usize << self.whole.len().min(8)).map(|corner| {
-            let end = |(k, p): (usize, &Parameter)| if corner >> k & 1 == 1 { p.high } else { p.low };
+            let end = |(k, p): (usize, &ParameterRange)| if corner >> k & 1 == 1 { p.high } else { p.low };
             self.whole.iter().enumerate().map(end).collect()
         })
     }
@@ -233,11 +233,11 @@ impl Subject for Sum<'_> {
         self.name.clone()
     }
 
-    fn parameters(&self) -> &[Parameter] {
+    fn parameters(&self) -> &[ParameterRange] {
         &self.parameters
     }
 
-    fn integral_parameters(&self) -> &[Parameter] {
+    fn integral_parameters(&self) -> &[ParameterRange] {
         &self.whole
     }
 
@@ -396,7 +396,7 @@ impl Subject for Sum<'_> {
         let refused = refused.map(|why| format!("not judged where it is refused: {why}"));
         let clipped = self.parameters.iter().zip(&self.whole).filter(|(values, whole)| values != whole);
         let clipped = clipped.map(|(values, whole)| {
-            let Parameter { name, low, .. } = values;
+            let ParameterRange { name, low, .. } = values;
             format!(
                 "{name} from {} to {low} is a delta, without values: checked through its integrals alone",
                 whole.low
@@ -411,8 +411,8 @@ fn has_values(lobes: &[Lobe]) -> bool {
 }
 
 /// The part of a parameter's range that has values.
-fn with_values(parameter: &Parameter, lobes: &[Lobe]) -> Result<Parameter> {
-    let Parameter { name, low, high, .. } = parameter;
+fn with_values(parameter: &ParameterRange, lobes: &[Lobe]) -> Result<ParameterRange> {
+    let ParameterRange { name, low, high, .. } = parameter;
     let shapes = || lobes.iter().filter_map(|lobe| lobe.model().shape);
     let least = match name.ends_with("roughness") {
         true => shapes().map(|shape| shape.roughness(shape.least)).fold(0.0, f64::max),
@@ -421,7 +421,7 @@ fn with_values(parameter: &Parameter, lobes: &[Lobe]) -> Result<Parameter> {
     if least == 0.0 {
         return Ok(parameter.clone());
     }
-    if *high < least { Ok(parameter.clone()) } else { Parameter::new(name, low.max(least), *high) }
+    if *high < least { Ok(parameter.clone()) } else { ParameterRange::new(name, low.max(least), *high) }
 }
 
 /// Increasing, each once.

@@ -8,7 +8,7 @@ use crate::base::angles::Angles;
 use crate::base::error::{Error, Result};
 use crate::base::half_angle::MU_MIN;
 use crate::base::timings::Stopwatch;
-use crate::verify::{Parameter, Subject, Symmetry};
+use crate::verify::{ParameterRange, Subject, Symmetry};
 use naga::valid::{Capabilities, ModuleInfo, ShaderStages, ValidationFlags, Validator};
 use naga::{Block, Function, Module, ScalarKind, Statement, TypeInner, VectorSize};
 use rayon::prelude::*;
@@ -244,7 +244,7 @@ fn cos(theta: f64) -> f64 {
 pub struct UserShader<'a> {
     device: &'a Device,
     function: UserFunction,
-    parameters: Vec<Parameter>,
+    parameters: Vec<ParameterRange>,
     /// Whether it has cos θi in it.
     cosine: bool,
     symmetry: Symmetry,
@@ -281,7 +281,7 @@ impl<'a> UserShader<'a> {
     pub fn new(
         device: &'a Device,
         function: UserFunction,
-        parameters: Vec<Parameter>,
+        parameters: Vec<ParameterRange>,
         cosine: bool,
         symmetry: Symmetry,
     ) -> Result<Self> {
@@ -437,7 +437,7 @@ impl Subject for UserShader<'_> {
         format!("fn {} of {}", self.function.entry, self.function.file)
     }
 
-    fn parameters(&self) -> &[Parameter] {
+    fn parameters(&self) -> &[ParameterRange] {
         &self.parameters
     }
 

@@ -11,7 +11,7 @@ use gonio::scene::parse_recipe;
 use gonio::scene::planner::{Plan, Selection};
 use gonio::table::axis::Variable::{Mu, PhiE, PhiI, ThetaE, ThetaI};
 use gonio::table::quantity::{BRDF, Quantity, RHO_DH, RHO_HH, SPLIT_SUM};
-use gonio::verify::{Options, Parameter, Sum, Verdict, check};
+use gonio::verify::{ParameterRange, Sum, Verdict, VerifyOptions, check};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::path::Path;
 
@@ -157,10 +157,10 @@ fn recipes_take_two_alphas() {
 fn promises_are_kept() {
     for name in ["ggx-anisotropic", "beckmann-anisotropic"] {
         let lobe = Lobe::new(model(name), Some(0.5), vec![[1.0, 1.0]; 3]).unwrap();
-        let parameters =
-            [("roughness", 0.5, 0.5), ("aspect", 4.0, 4.0)].map(|(n, a, b)| Parameter::new(n, a, b).unwrap());
+        let parameters = [("roughness", 0.5, 0.5), ("aspect", 4.0, 4.0)]
+            .map(|(n, a, b)| ParameterRange::new(n, a, b).unwrap());
         let mut subject = Sum::model(device(), lobe, parameters.to_vec()).unwrap();
-        let options = Options { budget: 100_000, search: false };
+        let options = VerifyOptions { budget: 100_000, search: false };
         let report = check(&mut subject, &options, &Unobserved).unwrap();
         assert!(report.find("isotropy").is_none());
         for finding in &report.findings {

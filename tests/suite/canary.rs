@@ -13,7 +13,7 @@ use gonio::table::axis::Variable;
 use gonio::table::quantity::RHO_DH;
 use gonio::table::rule::Rule;
 use gonio::verify::user_shader::{UserFunction, UserShader};
-use gonio::verify::{Parameter, Subject, Symmetry};
+use gonio::verify::{ParameterRange, Subject, Symmetry};
 
 fn opened() -> &'static Device {
     let Evaluator::Device(device) = device() else { unreachable!("common::device asserts it") };
@@ -29,7 +29,7 @@ fn canary() -> Canary {
 fn shader(body: &str) -> UserShader<'static> {
     let source = format!("fn f(wi: vec3f, wo: vec3f, x: f32, y: f32) -> f32 {{ {body} }}");
     let function = UserFunction::parse("canary.wgsl", source, "f").unwrap();
-    let parameters = ["x", "y"].map(|name| Parameter::new(name, -1e38, 1e38).unwrap()).to_vec();
+    let parameters = ["x", "y"].map(|name| ParameterRange::new(name, -1e38, 1e38).unwrap()).to_vec();
     UserShader::new(opened(), function, parameters, false, Symmetry { isotropic: true, bilateral: true })
         .unwrap()
 }

@@ -6,12 +6,14 @@ use gonio::backend::gpu::Device;
 use gonio::bake::{Evaluator, Unobserved};
 use gonio::base::angles::Angles;
 use gonio::verify::user_shader::{UserFunction, UserShader, directions};
-use gonio::verify::{Declared, Finding, Options, Parameter, Report, Subject, Symmetry, Verdict, check};
+use gonio::verify::{
+    Declared, Finding, ParameterRange, Report, Subject, Symmetry, Verdict, VerifyOptions, check,
+};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 const SYMMETRIC: Symmetry = Symmetry { isotropic: true, bilateral: true };
 /// A fifth of the default: enough for every fault here.
-const OPTIONS: Options = Options { budget: 4_000_000, search: true };
+const OPTIONS: VerifyOptions = VerifyOptions { budget: 4_000_000, search: true };
 
 fn gpu() -> &'static Device {
     match device() {
@@ -27,7 +29,8 @@ fn path(file: &str) -> String {
 fn shader(file: &str, entry: &str, parameters: &[(&str, f64, f64)], cosine: bool) -> UserShader<'static> {
     let source = std::fs::read_to_string(path(file)).unwrap();
     let function = UserFunction::parse(format!("{file}.wgsl"), source, entry).unwrap();
-    let parameters = parameters.iter().map(|&(name, a, b)| Parameter::new(name, a, b).unwrap()).collect();
+    let parameters =
+        parameters.iter().map(|&(name, a, b)| ParameterRange::new(name, a, b).unwrap()).collect();
     UserShader::new(gpu(), function, parameters, cosine, SYMMETRIC).unwrap()
 }
 
@@ -154,7 +157,7 @@ fn anisotropy_is_caught_where_none_is_expected() {
 /// A fault in 10⁻⁹ of the angles: the scan alone does not meet it, the search climbs to it.
 #[test]
 fn a_small_fault_is_searched_for() {
-    let scan = Options { search: false, ..OPTIONS };
+    let scan = VerifyOptions { search: false, ..OPTIONS };
     let met = check(&mut shader("basin", "brdf", &[], false), &scan, &Unobserved).unwrap();
     assert!(met.is_kept(), "{:?}", met.find("reciprocity"));
     let finding = caught("basin", "reciprocity", |f, a| (f(a)[0] - f(swapped(a))[0]).abs() > 1e-4);
@@ -205,7 +208,7 @@ impl Subject for Declaring {
     fn name(&self) -> String {
         self.inner.name()
     }
-    fn parameters(&self) -> &[Parameter] {
+    fn parameters(&self) -> &[ParameterRange] {
         self.inner.parameters()
     }
     fn channels(&self) -> usize {
@@ -243,7 +246,7 @@ impl Subject for Referenced {
     fn name(&self) -> String {
         "referenced".into()
     }
-    fn parameters(&self) -> &[Parameter] {
+    fn parameters(&self) -> &[ParameterRange] {
         &[]
     }
     fn channels(&self) -> usize {

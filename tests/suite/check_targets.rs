@@ -10,10 +10,10 @@ use gonio::model::compensation::Compensation;
 use gonio::model::lobe::Lobe;
 use gonio::scene::{Distribution, Formula, FormulaInput, Material, MaterialLobe, Weights};
 use gonio::verify::{
-    Declared, Options, Parameter, Report, Subject, Sum, Symmetry, Tolerances, Verdict, check,
+    Declared, ParameterRange, Report, Subject, Sum, Symmetry, Tolerances, Verdict, VerifyOptions, check,
 };
 
-const OPTIONS: Options = Options { budget: 2_000_000, search: true };
+const OPTIONS: VerifyOptions = VerifyOptions { budget: 2_000_000, search: true };
 
 fn report(subject: &mut dyn Subject) -> Report {
     let report = check(subject, &OPTIONS, &Unobserved).unwrap();
@@ -69,11 +69,12 @@ fn every_model_keeps_its_promises_over_its_whole_range() {
     for model in MODELS {
         let mut parameters = Vec::new();
         if let Some(shape) = model.shape {
-            parameters.push(Parameter::new(shape.name, shape.least, shape.most).unwrap());
+            parameters.push(ParameterRange::new(shape.name, shape.least, shape.most).unwrap());
         }
-        parameters
-            .extend(model.parameters.iter().map(|p| Parameter::new(p.name, p.range[0], p.range[1]).unwrap()));
-        let weights = model.components.iter().map(|c| Parameter::new(c.weight, 0.0, 1.0).unwrap());
+        parameters.extend(
+            model.parameters.iter().map(|p| ParameterRange::new(p.name, p.range[0], p.range[1]).unwrap()),
+        );
+        let weights = model.components.iter().map(|c| ParameterRange::new(c.weight, 0.0, 1.0).unwrap());
         parameters.extend(weights);
         let lobe = Lobe::new(model, Some(0.5), vec![[0.0; 2]; 3]).unwrap();
         let report = report(&mut Sum::model(device(), lobe, parameters).unwrap());
@@ -101,7 +102,7 @@ fn every_model_keeps_its_promises_over_its_whole_range() {
 fn a_range_that_reaches_the_mirror_is_integrated_to_it() {
     let model = gonio::model::find("ggx").unwrap();
     let lobe = Lobe::new(model, None, vec![[1.0, 1.0]; 3]).unwrap();
-    let range = Parameter::new("roughness", 0.0, 0.5).unwrap();
+    let range = ParameterRange::new("roughness", 0.0, 0.5).unwrap();
     let report = report(&mut Sum::model(device(), lobe, vec![range]).unwrap());
     assert!(report.is_kept() && report.notes[0].contains("0.001"), "{:?}", report.notes);
     let finite = report.find("finite").unwrap().input.as_ref().unwrap();
@@ -157,7 +158,7 @@ impl Subject for Scaled<'_> {
     fn name(&self) -> String {
         self.inner.name()
     }
-    fn parameters(&self) -> &[Parameter] {
+    fn parameters(&self) -> &[ParameterRange] {
         self.inner.parameters()
     }
     fn channels(&self) -> usize {
@@ -211,8 +212,9 @@ fn a_declared_gain_that_is_missing_or_too_large_fails() {
 fn agreement_is_asked_for_at_every_setting() {
     for (values, expected) in [(1.0, Verdict::Kept), (1.0 + 3e-5, Verdict::Broken)] {
         let lobe = Lobe::new(model("ggx-anisotropic"), Some(0.5), vec![[1.0; 2]; 3]).unwrap();
-        let inner = Sum::model(device(), lobe, vec![Parameter::new("aspect", 0.01, 100.0).unwrap()]).unwrap();
-        let options = Options { budget: 200_000, search: false };
+        let inner =
+            Sum::model(device(), lobe, vec![ParameterRange::new("aspect", 0.01, 100.0).unwrap()]).unwrap();
+        let options = VerifyOptions { budget: 200_000, search: false };
         let report = check(&mut Scaled { inner, scale: 0.0, values }, &options, &Unobserved).unwrap();
         let agreement = report.find("agreement").unwrap();
         assert!(agreement.limit > 6e-5);

@@ -17,7 +17,7 @@ use gonio::scene::{Scene, parse_recipe};
 use gonio::table::axis::Variable::{DeltaPhi, Mu, Roughness, ThetaE, ThetaI};
 use gonio::table::quantity::{BRDF, Quantity, RHO_DH, RHO_HH, SPLIT_SUM, of_a_brdf};
 use gonio::table::rule::Rule;
-use gonio::verify::{Options, Parameter, Sum, Verdict, check};
+use gonio::verify::{ParameterRange, Sum, Verdict, VerifyOptions, check};
 use std::path::Path;
 
 const WHITE: &str = "ggx-smith-correlated-none";
@@ -231,15 +231,17 @@ fn promises_are_kept_or_declared() {
     let subject = |kind: Compensation, name: &str| {
         let model = model(name);
         let weights = vec![[1.0, if model.components.len() > 1 { 1.0 } else { 0.0 }]; 3];
-        let ranges =
-            vec![Parameter::new("roughness", 0.3, 1.0).unwrap(), Parameter::new("f0", 0.5, 1.0).unwrap()];
+        let ranges = vec![
+            ParameterRange::new("roughness", 0.3, 1.0).unwrap(),
+            ParameterRange::new("f0", 0.5, 1.0).unwrap(),
+        ];
         Sum::compensated(device(), Lobe::new(model, Some(1.0), weights).unwrap(), kind, ranges).unwrap()
     };
     for name in ["ggx", WHITE] {
         for (kind, broken) in
             [(Compensation::KullaConty, &[][..]), (Compensation::Turquin, &["reciprocity", "energy"][..])]
         {
-            let options = Options { budget: 50_000, search: true };
+            let options = VerifyOptions { budget: 50_000, search: true };
             let report = check(&mut subject(kind, name), &options, &Unobserved).unwrap();
             for finding in &report.findings {
                 println!(

@@ -11,7 +11,7 @@ use gonio::plan::TablePlan;
 use gonio::scene::{Material, Scene, parse_recipe};
 use gonio::table::axis::Variable;
 use gonio::table::quantity::RHO_DH;
-use gonio::verify::{Options, Subject, Sum, Verdict, check};
+use gonio::verify::{Subject, Sum, Verdict, VerifyOptions, check};
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -207,7 +207,8 @@ fn promises_are_kept_or_declared() {
     for (disney, gains) in [(white, true), (gold, false), (coated, true)] {
         let scene = scene(&disney.recipe()).unwrap();
         let mut subject = Sum::material(device(), &scene.materials[0]).unwrap();
-        let report = check(&mut subject, &Options { budget: 20_000, search: true }, &Unobserved).unwrap();
+        let report =
+            check(&mut subject, &VerifyOptions { budget: 20_000, search: true }, &Unobserved).unwrap();
         for finding in &report.findings {
             println!("{}: {:?} {}", finding.property, finding.verdict, finding.said);
             let declared = gains && finding.property == "energy";

@@ -11,7 +11,7 @@ use gonio::scene::planner::{Plan, Selection};
 use gonio::scene::{Material, Scene, Weights, parse_recipe, read};
 use gonio::table::axis::Variable;
 use gonio::table::quantity::RHO_DH;
-use gonio::verify::{Options, Subject, Sum, Verdict, check};
+use gonio::verify::{Subject, Sum, Verdict, VerifyOptions, check};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 use std::path::Path;
@@ -488,7 +488,7 @@ fn promises_are_kept_or_declared() {
     for (extensions, budget) in [(coated, 100_000), (velvet, 20_000)] {
         let made = scene(&text, extensions);
         let mut subject = Sum::material(device(), &made.materials[0]).unwrap();
-        let report = check(&mut subject, &Options { budget, search: true }, &Unobserved).unwrap();
+        let report = check(&mut subject, &VerifyOptions { budget, search: true }, &Unobserved).unwrap();
         for finding in &report.findings {
             println!("{}: {:?} {}", finding.property, finding.verdict, finding.said);
             let declared = ["reciprocity", "energy"].contains(&finding.property);

@@ -4,7 +4,7 @@
 use crate::common::*;
 use gonio::bake::{Evaluator, Unobserved};
 use gonio::base::precision::Precision;
-use gonio::lab::trade::{Cost, Options, costs, measure};
+use gonio::lab::trade::{Cost, TradeOptions, costs, measure};
 use gonio::plan::TablePlan;
 use gonio::shader::{Kernel, compose, validate};
 use gonio::table::axis::{Axis, Mapping, Positions, Variable};
@@ -128,7 +128,7 @@ fn every_shader_is_portable() {
 /// Times apart, two measurements are the same; and the budget decides what is whole.
 #[test]
 fn a_measurement_repeats_but_for_its_times() {
-    let options = Options { budget: 0.05, check_all: false };
+    let options = TradeOptions { budget: 0.05, check_all: false };
     let plan = rough(8, 8);
     let of = || {
         let trade = measure(&plan, device(), &options, &Unobserved).unwrap();
@@ -159,7 +159,7 @@ fn a_measurement_repeats_but_for_its_times() {
 /// is much finer than that, the error is of its size. A format that rounds by more than a tolerance is no way to it.
 #[test]
 fn storage_is_a_dimension() {
-    let options = Options { budget: 0.05, check_all: true };
+    let options = TradeOptions { budget: 0.05, check_all: true };
     let trade = measure(&rough(8, 8), device(), &options, &Unobserved).unwrap();
     let values = 8 * 8 * 2;
     let find = |setting: &str, storage| {
@@ -198,7 +198,8 @@ fn storage_is_a_dimension() {
 fn storage_that_does_not_fit_is_left_out() {
     let axes = vec![axis(Variable::Roughness, 6), axis(Variable::ThetaI, 6)];
     let plan = TablePlan::basis("t", &RHO_DH, model("burley"), None, axes).unwrap();
-    let trade = measure(&plan, device(), &Options { budget: 0.05, check_all: true }, &Unobserved).unwrap();
+    let trade =
+        measure(&plan, device(), &TradeOptions { budget: 0.05, check_all: true }, &Unobserved).unwrap();
     let refused = |what: &&String| what.contains("as unorm16") && what.contains("outside [0, 1]");
     assert_eq!(trade.left_out.iter().filter(refused).count(), 5, "{:?}", trade.left_out);
     assert!(trade.points.iter().all(|p| p.storage != Storage::Unorm16));

@@ -9,7 +9,7 @@ use crate::table::axis::{Axis, Variable};
 use crate::table::quantity::{BRDF, Quantity, RHO_DH};
 use crate::table::storage::Storage;
 use crate::table::{ErrorKind, Table, TableError};
-use crate::verify::{FAINT, Finding, Parameter, Report, Subject};
+use crate::verify::{FAINT, Finding, ParameterRange, Report, Subject};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
@@ -111,7 +111,7 @@ fn setting(report: &Report, property: &str) -> Option<Vec<f64>> {
     Some(input.as_ref()?.setting.iter().map(|&(_, value)| value).collect())
 }
 
-fn pinned(parameters: &[Parameter], setting: &[f64], but: Option<usize>) -> BTreeMap<String, f64> {
+fn pinned(parameters: &[ParameterRange], setting: &[f64], but: Option<usize>) -> BTreeMap<String, f64> {
     let names = parameters.iter().map(|parameter| parameter.name.clone());
     let all = names.zip(setting.iter().copied()).enumerate();
     all.filter(|(k, _)| Some(*k) != but).map(|(_, pair)| pair).collect()
@@ -153,8 +153,8 @@ fn table(
 
 /// Interpolates a parameter's range at u in [0, 1]. α has even steps in roughness = √α, in which lobes change
 /// evenly.
-fn between(parameter: &Parameter, u: f64) -> f64 {
-    let Parameter { ref name, low, high, .. } = *parameter;
+fn between(parameter: &ParameterRange, u: f64) -> f64 {
+    let ParameterRange { ref name, low, high, .. } = *parameter;
     let value = match name.as_str() {
         "alpha" => (low.sqrt() + u * (high.sqrt() - low.sqrt())).powi(2),
         _ => low + u * (high - low),

@@ -11,7 +11,7 @@ use crate::model::lobe::Lobe;
 use crate::scene::planner::constant_lobes;
 use crate::scene::{Distribution, Scene, SubjectRequest};
 use crate::table::axis::Variable;
-use crate::verify::{Parameter, Sum};
+use crate::verify::{ParameterRange, Sum};
 use std::path::Path;
 
 /// A subject, and the `gonio eval` command for it without parameters and directions.
@@ -29,7 +29,9 @@ pub fn model<'a>(args: &Args, name: &str, evaluator: &'a Evaluator) -> Result<Ch
         let (key, value) = subject::key_value(set).map_err(|error| {
             Error::input(format!("{error}; or KEY=LOW..HIGH for a range, as in --set alpha=1e-6..1"))
         })?;
-        if fixed.iter().any(|(given, _)| *given == key) || ranges.iter().any(|r: &Parameter| r.name == key) {
+        if fixed.iter().any(|(given, _)| *given == key)
+            || ranges.iter().any(|r: &ParameterRange| r.name == key)
+        {
             return Err(Error::input(format!("--set {set}: \"{key}\" is given twice")));
         }
         match value.split_once("..") {
@@ -43,25 +45,25 @@ pub fn model<'a>(args: &Args, name: &str, evaluator: &'a Evaluator) -> Result<Ch
                         Error::input(format!("--set {set}: \"{text}\" is not a number; give {key}=LOW..HIGH"))
                     })
                 };
-                let range = Parameter::new(key, number(low)?, number(high)?);
+                let range = ParameterRange::new(key, number(low)?, number(high)?);
                 ranges.push(range.map_err(|e| e.at(format!("--set {set}")))?);
             }
         }
     }
     let given = |key: &str| {
         fixed.iter().any(|(given, _)| *given == key)
-            || ranges.iter().any(|range: &Parameter| range.name == key)
+            || ranges.iter().any(|range: &ParameterRange| range.name == key)
     };
     let mut whole = Vec::new();
     if let Some(shape) = model.shape.filter(|shape| !given(shape.name) && !given("roughness")) {
-        whole.push(Parameter::new(shape.name, shape.least, shape.most)?);
+        whole.push(ParameterRange::new(shape.name, shape.least, shape.most)?);
     }
     whole.extend(beside_the_shape(model)?.into_iter().filter(|parameter| !given(&parameter.name)));
     ranges.extend(whole);
 
     // The recipe's reader reports wrong names and values, at both ends of the ranges.
     let mut lobe = None;
-    for end in [|p: &Parameter| p.low, |p: &Parameter| p.high] {
+    for end in [|p: &ParameterRange| p.low, |p: &ParameterRange| p.high] {
         let ranged: Vec<_> =
             ranges.iter().map(|range| (range.name.as_str(), format!("{:?}", end(range)))).collect();
         let ranged = ranged.iter().map(|(key, value)| (*key, value.as_str()));
@@ -119,7 +121,7 @@ fn basis<'a>(
     let mut parameters = Vec::new();
     if model.shape.is_some() {
         let [low, high] = roughness;
-        parameters.push(Parameter::new("roughness", low, high)?);
+        parameters.push(ParameterRange::new("roughness", low, high)?);
     }
     parameters.extend(beside_the_shape(model)?);
     let lobe = Lobe::new(model, model.shape.map(|_| 1.0), vec![[0.0; 2]; 3])?;
@@ -128,10 +130,10 @@ fn basis<'a>(
 }
 
 /// Lists a model's parameters but roughness, and its components' weights, each over its whole range.
-fn beside_the_shape(model: &Model) -> Result<Vec<Parameter>> {
+fn beside_the_shape(model: &Model) -> Result<Vec<ParameterRange>> {
     let parameters = model.parameters.iter().map(|parameter| (parameter.name, parameter.range));
     let weights = model.components.iter().map(|component| (component.weight, [0.0, 1.0]));
-    parameters.chain(weights).map(|(name, [low, high])| Parameter::new(name, low, high)).collect()
+    parameters.chain(weights).map(|(name, [low, high])| ParameterRange::new(name, low, high)).collect()
 }
 
 /// Returns the range of roughness that the scene's materials and tables give a model, if they use it.

@@ -16,7 +16,7 @@ pub(crate) struct Dial {
 }
 
 /// A lobe: its name, its colour, and (θe, f cos θe).
-pub(crate) type Lobe<'a> = (&'a str, Color, Vec<(f64, f64)>);
+pub(crate) type PolarLobe<'a> = (&'a str, Color, Vec<(f64, f64)>);
 
 /// The radius of values: from 0, or logarithmic.
 pub(crate) fn radial(peaks: &[f64], log: bool) -> PlotScale {
@@ -102,7 +102,7 @@ impl Dial {
     }
 
     /// The lobes, with their names if there are several.
-    pub fn lobes(&self, canvas: &mut Canvas, scale: &PlotScale, theta_i: f64, lobes: &[Lobe]) {
+    pub fn lobes(&self, canvas: &mut Canvas, scale: &PlotScale, theta_i: f64, lobes: &[PolarLobe]) {
         let mut lines = Vec::new();
         for (name, color, lobe) in lobes {
             let points = lobe.iter().filter(|(_, value)| value.is_finite());

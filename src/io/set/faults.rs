@@ -3,7 +3,7 @@
 
 use super::TableSet;
 use crate::base::error::Result;
-use crate::io::disk::faults::{Fault, run};
+use crate::io::disk::faults::{DiskFault, run};
 use crate::io::verify;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -59,7 +59,7 @@ fn any_fault_at_any_step_leaves_the_old_set_or_the_new() {
     let empty = Set::new();
     let mut tried = [0; 2];
     for (old, new) in [(&first, &second), (&empty, &second), (&first, &first)] {
-        for (kind, fault) in [Fault::Error, Fault::Kill].into_iter().enumerate() {
+        for (kind, fault) in [DiskFault::Error, DiskFault::Kill].into_iter().enumerate() {
             for n in 0.. {
                 let folder = tempfile::tempdir().unwrap();
                 let dir = folder.path().join("out");
@@ -81,7 +81,7 @@ fn any_fault_at_any_step_leaves_the_old_set_or_the_new() {
                     // What failed was of no account: the copy of a link, say.
                     assert!(found == *new, "{place}");
                     assert!(verify(&dir).unwrap().is_empty(), "{place}");
-                } else if fault == Fault::Error && found == *old && old != new {
+                } else if fault == DiskFault::Error && found == *old && old != new {
                     let after = if dir.exists() { snapshot(&dir) } else { Set::new() };
                     let left: Vec<_> =
                         after.keys().filter(|name| !name.starts_with(super::STAGING)).collect();
@@ -109,7 +109,7 @@ fn plain_names_follow_the_manifest() {
     let [old, new] = [set(&[("gold", "old"), ("tin", "tin")]), set(&[("gold", "new"), ("lead", "lead")])];
     write(dir, &old).unwrap();
     for n in 0.. {
-        let (_, happened) = run(n, Fault::Kill, || write(dir, &new));
+        let (_, happened) = run(n, DiskFault::Kill, || write(dir, &new));
         assert!(happened, "no kill was between the manifest and the plain names");
         if read(dir) == new && fs::read(dir.join("gold.png")).unwrap() == b"old" {
             break;

@@ -9,7 +9,7 @@ use serde::Serialize;
 type Evaluate<'a> = dyn FnMut(&[f64], &[Angles], &mut Vec<f32>) -> Result<()> + 'a;
 
 /// What is measured.
-pub(super) struct Subject<'a> {
+pub(super) struct BandSubject<'a> {
     /// 1 or 2.
     pub channels: usize,
     /// f by α, pair of directions and channel.
@@ -215,7 +215,7 @@ const CHUNK: usize = 1 << 13;
 
 /// A tally for each α, of every pair of directions and its exchange.
 pub(super) fn measure(
-    subject: &mut Subject,
+    subject: &mut BandSubject,
     alphas: &[f64],
     angles: &[Angles],
     advance: &dyn Fn(f64) -> Result<()>,
@@ -268,7 +268,7 @@ mod tests {
     /// A surface of f = 1, that is wrong where `fault` says so.
     fn tally(fault: impl Fn(&Angles) -> f32) -> BandTally {
         let angles = super::super::directions::everywhere(20_000);
-        let mut subject = Subject {
+        let mut subject = BandSubject {
             channels: 1,
             evaluate: &mut |_, angles, values| {
                 values.clear();

@@ -2,14 +2,14 @@
 
 use crate::base::angles::Angles;
 use crate::base::error::Result;
-use crate::lab::atlas::band::{Subject, floor};
+use crate::lab::atlas::band::{BandSubject, floor};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A table of errors.
 #[derive(Debug, Clone, Serialize)]
-pub struct Map {
+pub struct ErrorMap {
     /// At this α, the worst; none for a model without.
     pub alpha: Option<f64>,
     /// θi and θe, rad, both ends of [0, π/2] included.
@@ -25,7 +25,7 @@ const SIZE: usize = 91;
 /// δφ: the peak, all magnitudes from 1e-7, and backwards.
 const DELTAS: usize = 24;
 
-pub(super) fn measure(subject: &mut Subject, alpha: f64, shown: Option<f64>) -> Result<Map> {
+pub(super) fn measure(subject: &mut BandSubject, alpha: f64, shown: Option<f64>) -> Result<ErrorMap> {
     let theta = |k: usize| FRAC_PI_2 * (k as f64 / (SIZE - 1) as f64);
     let thetas: Vec<_> = (0..SIZE).map(theta).collect();
     let delta =
@@ -37,7 +37,7 @@ pub(super) fn measure(subject: &mut Subject, alpha: f64, shown: Option<f64>) -> 
         });
         let row: Vec<_> = row.collect();
         (subject.evaluate)(&[alpha], &row, &mut values)?;
-        let Subject { reference, channels, faint, .. } = *subject;
+        let BandSubject { reference, channels, faint, .. } = *subject;
         let found: Vec<f64> = row
             .par_iter()
             .zip(values.par_chunks_exact(channels))
@@ -55,7 +55,7 @@ pub(super) fn measure(subject: &mut Subject, alpha: f64, shown: Option<f64>) -> 
         );
         medians.push(found.chunks_exact(DELTAS).map(middle).collect());
     }
-    Ok(Map { alpha: shown, thetas, errors, medians })
+    Ok(ErrorMap { alpha: shown, thetas, errors, medians })
 }
 
 fn middle(values: &[f64]) -> f64 {

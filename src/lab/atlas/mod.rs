@@ -21,7 +21,7 @@ mod study;
 mod write;
 
 pub use band::{Band, WorstInput};
-pub use map::Map;
+pub use map::ErrorMap;
 #[cfg(feature = "cli")]
 pub(crate) use study::STEPS;
 pub use study::{OWN, ROUNDED, study};
@@ -35,7 +35,7 @@ use crate::base::precision::VALUE_F32;
 use crate::check::{reference_angles, reference_of_model, reference_parameters};
 use crate::model::Model;
 use crate::model::lobe::Lobe;
-use band::{BandTally, Subject, measure};
+use band::{BandSubject, BandTally, measure};
 use gonio_reference::Setting;
 use serde::Serialize;
 
@@ -93,7 +93,7 @@ pub struct Page {
     pub alphas: Vec<Band>,
     /// Where over the hemispheres; not of a study's forms.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub map: Option<Map>,
+    pub map: Option<ErrorMap>,
 }
 
 impl Page {
@@ -142,7 +142,7 @@ pub fn measure_model(
         let alpha = model.shape.map_or(String::new(), |shape| format!(" --set {}={alpha:?}", shape.name));
         format!("--model {}{alpha}{weights}", model.name)
     };
-    let mut subject = Subject {
+    let mut subject = BandSubject {
         channels,
         evaluate: &mut |alphas, angles, values| points.sweep(alphas, angles, values),
         reference: &|angles: &Angles, alpha| {

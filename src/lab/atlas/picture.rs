@@ -6,7 +6,7 @@ use crate::io::draw::canvas::{Align, BLACK, Canvas, Color, GREY, Pixels, Rect};
 use crate::io::draw::colormap::viridis;
 use crate::io::draw::panel::{BELOW, LABEL_SIZE, LEFT, axis_labels, color_bar, ticks_below, ticks_left};
 use crate::io::draw::scale::{PlotScale, ScaleKind, short};
-use crate::lab::atlas::{Band, DECADES, Map, Page};
+use crate::lab::atlas::{Band, DECADES, ErrorMap, Page};
 use std::f64::consts::FRAC_PI_2;
 
 /// Of different lightness too, so that they differ in print: Okabe & Ito 2008.
@@ -95,7 +95,7 @@ fn by_alpha(canvas: &mut Canvas, frame: Rect, bands: &[Band]) {
     plot(canvas, frame, &x, &lines, "α");
 }
 
-fn by_theta(canvas: &mut Canvas, frame: Rect, map: &Map, promise: Option<f64>) {
+fn by_theta(canvas: &mut Canvas, frame: Rect, map: &ErrorMap, promise: Option<f64>) {
     let rows = |rows: &[Vec<f64>], of: fn(&[f64]) -> f64| -> Vec<_> {
         map.thetas.iter().zip(rows).map(|(&theta, row)| (theta, of(row))).collect()
     };
@@ -146,7 +146,7 @@ fn plot(canvas: &mut Canvas, frame: Rect, x: &PlotScale, lines: &[Line], below: 
     }
 }
 
-fn hemispheres(canvas: &mut Canvas, frame: Rect, map: &Map) {
+fn hemispheres(canvas: &mut Canvas, frame: Rect, map: &ErrorMap) {
     let max = map.errors.iter().flatten().copied().filter(|e| e.is_finite()).fold(0.0, f64::max);
     let scale = PlotScale { range: [0.0, if max > 0.0 { 1e6 * max } else { 1.0 }], kind: ScaleKind::Linear };
     let count = map.thetas.len();
@@ -173,7 +173,7 @@ fn hemispheres(canvas: &mut Canvas, frame: Rect, map: &Map) {
 }
 
 /// A name, and what it is of a band.
-type Column = (&'static str, fn(&Band) -> f64);
+type PictureColumn = (&'static str, fn(&Band) -> f64);
 
 /// The study, as a PNG file: median and largest error of each form by decade of α.
 pub(crate) fn draw_study(forms: &[Page]) -> Result<Vec<u8>> {
@@ -188,7 +188,7 @@ pub(crate) fn draw_study(forms: &[Page]) -> Result<Vec<u8>> {
     let said = "D·V against f64, over pairs within the lobe (99 % of its normals), θ ≤ 89.9°. Upper border: 10 and more, or not finite. Thick lines lie below thin ones";
     canvas.text(said, (30.0, 54.0), LABEL_SIZE, Align::Left, GREY);
     let (w, h) = (365.0, 640.0 - TOP - BELOW - 10.0);
-    let values: [Column; 2] = [("median", |band| band.median), ("largest", |band| band.max)];
+    let values: [PictureColumn; 2] = [("median", |band| band.median), ("largest", |band| band.max)];
     let (x, y) = (
         PlotScale { range: [DECADES[0], 1.0], kind: ScaleKind::Log },
         PlotScale { range: [1e-8, 10.0], kind: ScaleKind::Log },

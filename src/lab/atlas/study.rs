@@ -11,12 +11,12 @@ use crate::bake::{Evaluator, Observer};
 use crate::base::angles::Angles;
 use crate::base::error::{Error, Result};
 use crate::check::{reference_angles, reference_of_model};
-use crate::lab::atlas::band::{Subject, measure};
+use crate::lab::atlas::band::{BandSubject, measure};
 use crate::lab::atlas::{DECADES, Page, alphas, directions, page};
 use crate::model;
 use crate::model::lobe::Lobe;
 use crate::verify::user_shader::{UserFunction, UserShader};
-use crate::verify::{Parameter, Subject as _, Symmetry};
+use crate::verify::{ParameterRange, Subject as _, Symmetry};
 use gonio_reference::{Parameters, Setting};
 use std::f64::consts::PI;
 
@@ -74,7 +74,7 @@ pub fn study(evaluator: &Evaluator, budget: u64, observer: &dyn Observer) -> Res
     for Form { name, source, wgsl } in FORMS {
         observer.begin(&format!("study of {name}"));
         let function = UserFunction::parse(name, wgsl, "brdf")?;
-        let alpha = Parameter::new("alpha", DECADES[0], 1.0)?;
+        let alpha = ParameterRange::new("alpha", DECADES[0], 1.0)?;
         let symmetry = Symmetry { isotropic: true, bilateral: true };
         let mut shader = UserShader::new(device, function, vec![alpha], false, symmetry)?;
         let evaluate =
@@ -107,7 +107,7 @@ fn form(
     let ggx = reference_of_model(model::find("ggx")?)
         .ok_or_else(|| Error::Internal("ggx has no reference".into()))?;
     let per_alpha = (budget as usize / alphas.len()).max(1);
-    let mut subject = Subject {
+    let mut subject = BandSubject {
         channels: 1,
         evaluate: &mut |alphas, angles, values| {
             values.clear();

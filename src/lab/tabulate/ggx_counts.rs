@@ -35,7 +35,7 @@ const DEEP_MU: f64 = 4.5;
 const DEEP_ALPHA: f64 = 6.5;
 
 /// [near nodes, far nodes, near azimuths, far azimuths] in tenths, for each tolerance.
-type Counts = [[u16; 4]; DECADES];
+type MeasuredCounts = [[u16; 4]; DECADES];
 
 fn compute(tick: &(dyn Fn(f64) + Sync)) -> String {
     let rules = rules();
@@ -45,7 +45,7 @@ fn compute(tick: &(dyn Fn(f64) + Sync)) -> String {
         tick(1.0 / (rows * columns) as f64);
         counts
     };
-    let table: Vec<Counts> = (0..rows * columns).into_par_iter().map(count).collect();
+    let table: Vec<MeasuredCounts> = (0..rows * columns).into_par_iter().map(count).collect();
     let mut text = String::from(
         "/// [near nodes, far nodes, near azimuths, far azimuths] in tenths, for each tolerance and place.\n",
     );
@@ -70,7 +70,7 @@ fn rules() -> Vec<Vec<Node>> {
 }
 
 /// The counts at a place.
-fn counts_at(rules: &[Vec<Node>], mu_place: usize, alpha_place: usize) -> Counts {
+fn counts_at(rules: &[Vec<Node>], mu_place: usize, alpha_place: usize) -> MeasuredCounts {
     let mut largest = [[10; 4]; DECADES];
     for mu in around(&MU_PLACES, mu_place, DEEP_MU, MU_MIN) {
         for alpha in around(&ALPHA_PLACES, alpha_place, DEEP_ALPHA, ALPHA_MIN_INTEGRAL) {
@@ -156,7 +156,7 @@ mod tests {
         let places = [(0, 0), (0, 7), (3, 3), (5, 12), (8, 1), (10, 10), (13, 5)];
         places.into_par_iter().for_each(|(i, j)| {
             let counts = counts_at(&rules, i, j);
-            let source: Counts = std::array::from_fn(|decade| COUNTS[decade][i][j]);
+            let source: MeasuredCounts = std::array::from_fn(|decade| COUNTS[decade][i][j]);
             assert_eq!(counts, source, "at μ = 2^-{}, α = 2^-{}", MU_PLACES[i], ALPHA_PLACES[j]);
         });
     }

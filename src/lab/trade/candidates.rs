@@ -36,7 +36,7 @@ pub(super) fn candidates(
     let most = budget * EVALUATIONS_PER_SECOND;
     let (mut found, mut left_out) = (Vec::new(), Vec::new());
     for method in methods() {
-        let stored = |row: Setting| storages(row.2).map(move |storage| (row.clone(), storage));
+        let stored = |row: CandidateSetting| storages(row.2).map(move |storage| (row.clone(), storage));
         for ((setting, rule, tolerance), storage) in method.into_iter().flat_map(stored) {
             let of = |plan: &TablePlan| -> Result<(TablePlan, u64)> {
                 let plan = plan.clone().with_rule(rule)?.with_storage(storage)?;
@@ -91,10 +91,10 @@ pub(super) fn setting(method: &str, setting: &str) -> Option<(Rule, Option<f64>)
     found.map(|(_, rule, tolerance)| (rule, tolerance))
 }
 
-type Setting = (String, Rule, Option<f64>);
+type CandidateSetting = (String, Rule, Option<f64>);
 
 /// The methods, each from cheap to dear.
-pub(super) fn methods() -> [Vec<Setting>; 6] {
+pub(super) fn methods() -> [Vec<CandidateSetting>; 6] {
     let sampled = |rule: fn(usize) -> Rule| {
         (4..=18).map(|k| 1 << k).map(|samples| (samples.to_string(), rule(samples), None)).collect()
     };

@@ -33,7 +33,7 @@ use timing::{Timing, median, rounds, time};
 
 /// How much to measure.
 #[derive(Debug, Clone, Copy)]
-pub struct Options {
+pub struct TradeOptions {
     /// Seconds, as a device of 10⁸ evaluations a second would need them: which points are measured, and on
     /// which texels, must not depend on the clock.
     pub budget: f64,
@@ -41,7 +41,7 @@ pub struct Options {
     pub check_all: bool,
 }
 
-impl Options {
+impl TradeOptions {
     /// No more steps than an observer is told of: the reference, and each method at each cost.
     pub fn steps(&self) -> usize {
         let settings = candidates::methods().into_iter().flatten();
@@ -142,7 +142,7 @@ pub struct Point {
 pub fn measure(
     table: &TablePlan,
     evaluator: &Evaluator,
-    options: &Options,
+    options: &TradeOptions,
     observer: &dyn Observer,
 ) -> Result<Trade> {
     if table.quantity().is_value() {

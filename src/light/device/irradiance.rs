@@ -6,7 +6,7 @@ use crate::backend::gpu::device::Device;
 use crate::backend::gpu::loop_limit::SAFE_TURNS;
 use crate::base::error::Result;
 use crate::light::device::{BAND_BYTES, RESULT_BYTES, ResultBuffers, add, pieces};
-use crate::light::irradiance::{BLOCK, Column, PreparedMap, Row};
+use crate::light::irradiance::{BLOCK, MapColumn, PreparedMap, Row};
 use crate::shader::Kernel;
 use bytemuck::{Pod, Zeroable};
 
@@ -124,8 +124,8 @@ fn of_row(row: &Row) -> [f32; 8] {
     [a, b, c, d, e, f, across, along].map(|x| x as f32)
 }
 
-fn of_column(column: &Column) -> [f32; 4] {
-    let Column { middle: [a, b], chord: [c, d] } = *column;
+fn of_column(column: &MapColumn) -> [f32; 4] {
+    let MapColumn { middle: [a, b], chord: [c, d] } = *column;
     [a, b, c, d].map(|x| x as f32)
 }
 

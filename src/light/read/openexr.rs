@@ -2,7 +2,7 @@
 
 use crate::base::error::{Error, Result};
 use crate::light::environment::check_size;
-use crate::light::read::Picture;
+use crate::light::read::MapPicture;
 use exr::block::{self, UncompressedBlock, reader::ChunksReader};
 use exr::compression::Compression;
 use exr::error::Error as Fault;
@@ -24,13 +24,13 @@ const MAX_CHANNELS: usize = 1024;
 const NAMED: usize = 40;
 
 /// Reads a map. A panic of the decoder, whose sums for a damaged block of B44 may overflow where that is checked, is an error.
-pub(super) fn read(file: impl Read + Seek) -> Result<Picture> {
+pub(super) fn read(file: impl Read + Seek) -> Result<MapPicture> {
     catch_unwind(AssertUnwindSafe(|| decode(file))).unwrap_or_else(|_| {
         Err(Error::input("not a whole OpenEXR file (its decoder stopped); write the map again"))
     })
 }
 
-fn decode(file: impl Read + Seek) -> Result<Picture> {
+fn decode(file: impl Read + Seek) -> Result<MapPicture> {
     let reader = block::read(file, false).map_err(explain)?;
     let headers = reader.headers();
     headers.iter().try_for_each(check_part)?;
@@ -83,7 +83,7 @@ fn decode(file: impl Read + Seek) -> Result<Picture> {
             })
         })
         .map_err(explain)?;
-    Ok(Picture { width, height, texels, notes })
+    Ok(MapPicture { width, height, texels, notes })
 }
 
 fn explain(fault: Fault) -> Error {

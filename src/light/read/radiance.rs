@@ -8,7 +8,7 @@
 
 use crate::base::error::{Error, Result};
 use crate::light::environment::check_size;
-use crate::light::read::Picture;
+use crate::light::read::MapPicture;
 use std::io::{BufRead, ErrorKind, Read};
 
 /// Headers are at most so long.
@@ -18,7 +18,7 @@ const ENCODED: std::ops::RangeInclusive<usize> = 8..=0x7fff;
 
 type Rgbe = [u8; 4];
 
-pub(super) fn read(mut file: impl BufRead) -> Result<Picture> {
+pub(super) fn read(mut file: impl BufRead) -> Result<MapPicture> {
     let Header { scale, order, notes } = Header::read(&mut file)?;
     let (width, height) = (order.width, order.height);
     check_size(width, height)?;
@@ -33,7 +33,7 @@ pub(super) fn read(mut file: impl BufRead) -> Result<Picture> {
             texels[row * width + column] = radiance(*pixel, scale);
         }
     }
-    Ok(Picture { width, height, texels, notes })
+    Ok(MapPicture { width, height, texels, notes })
 }
 
 fn radiance([r, g, b, e]: Rgbe, scale: [f64; 3]) -> [f32; 3] {
@@ -50,7 +50,7 @@ fn radiance([r, g, b, e]: Rgbe, scale: [f64; 3]) -> [f32; 3] {
 struct Header {
     /// By what each channel is divided.
     scale: [f64; 3],
-    order: Order,
+    order: Orientation,
     notes: Vec<String>,
 }
 
@@ -87,7 +87,7 @@ impl Header {
             let [r, g, b] = scale;
             notes.push(format!("its exposures are undone: R, G and B are divided by {r}, {g} and {b}"));
         }
-        Ok(Self { scale, order: Order::parse(&next()?)?, notes })
+        Ok(Self { scale, order: Orientation::parse(&next()?)?, notes })
     }
 }
 
@@ -128,7 +128,7 @@ fn divide(scale: &mut [f64; 3], line: &str, by: Option<[f64; 3]>, notes: &mut Ve
 }
 
 /// The order of pixels: `resolu.c`.
-struct Order {
+struct Orientation {
     width: usize,
     height: usize,
     /// Whether lines are columns.
@@ -137,7 +137,7 @@ struct Order {
     is_flipped: [bool; 2],
 }
 
-impl Order {
+impl Orientation {
     /// Parses "-Y 512 +X 1024": the slower axis first, Y from the bottom up and X from the left to the right.
     fn parse(line: &str) -> Result<Self> {
         let fault = || {
@@ -176,20 +176,20 @@ impl Order {
 
 // ---- Lines of pixels -------------------------------------------------------------------------------
 
-enum Fault {
+enum HeaderFault {
     Io(std::io::Error),
     /// It is encoded for another length.
     Length(usize),
     Damaged,
 }
 
-impl From<std::io::Error> for Fault {
+impl From<std::io::Error> for HeaderFault {
     fn from(error: std::io::Error) -> Self {
         Self::Io(error)
     }
 }
 
-impl Fault {
+impl HeaderFault {
     fn explain(self, line: String, length: usize) -> Error {
         Error::input(match self {
             Self::Io(why) if why.kind() != ErrorKind::UnexpectedEof => format!("{line}: {why}"),
@@ -205,7 +205,7 @@ impl Fault {
 }
 
 /// Reads a line: `freadcolrs` of `color.c`.
-fn read_line(file: &mut impl Read, pixels: &mut [Rgbe]) -> Result<(), Fault> {
+fn read_line(file: &mut impl Read, pixels: &mut [Rgbe]) -> Result<(), HeaderFault> {
     let length = pixels.len();
     let first = read_bytes(file)?;
     let [2, 2, high @ ..=0x7f, low] = first else { return read_old_line(file, first, pixels) };
@@ -214,7 +214,7 @@ fn read_line(file: &mut impl Read, pixels: &mut [Rgbe]) -> Result<(), Fault> {
     }
     let encoded = usize::from(high) << 8 | usize::from(low);
     if encoded != length {
-        return Err(Fault::Length(encoded));
+        return Err(HeaderFault::Length(encoded));
     }
     for channel in 0..4 {
         let mut rest = &mut pixels[..];
@@ -222,7 +222,7 @@ fn read_line(file: &mut impl Read, pixels: &mut [Rgbe]) -> Result<(), Fault> {
             let [code] = read_bytes(file)?;
             let (is_run, count) = if code > 128 { (true, code - 128) } else { (false, code) };
             let (now, later) =
-                rest.split_at_mut_checked(count.into()).filter(|_| count > 0).ok_or(Fault::Damaged)?;
+                rest.split_at_mut_checked(count.into()).filter(|_| count > 0).ok_or(HeaderFault::Damaged)?;
             let [mut value] = if is_run { read_bytes(file)? } else { [0] };
             for pixel in now {
                 if !is_run {
@@ -237,7 +237,7 @@ fn read_line(file: &mut impl Read, pixels: &mut [Rgbe]) -> Result<(), Fault> {
 }
 
 /// Reads a line of plain pixels, in which (1, 1, 1, n) repeats the last one n times, and 256 n times after another such.
-fn read_old_line(file: &mut impl Read, first: Rgbe, pixels: &mut [Rgbe]) -> Result<(), Fault> {
+fn read_old_line(file: &mut impl Read, first: Rgbe, pixels: &mut [Rgbe]) -> Result<(), HeaderFault> {
     let (mut filled, mut shift, mut next) = (0, 0, Some(first));
     while filled < pixels.len() {
         let pixel = match next.take() {
@@ -249,9 +249,9 @@ fn read_old_line(file: &mut impl Read, first: Rgbe, pixels: &mut [Rgbe]) -> Resu
             (filled, shift) = (filled + 1, 0);
             continue;
         };
-        let last = filled.checked_sub(1).map(|k| pixels[k]).ok_or(Fault::Damaged)?;
-        let count = usize::from(n).checked_shl(shift).filter(|_| shift < 32).ok_or(Fault::Damaged)?;
-        pixels[filled..].get_mut(..count).ok_or(Fault::Damaged)?.fill(last);
+        let last = filled.checked_sub(1).map(|k| pixels[k]).ok_or(HeaderFault::Damaged)?;
+        let count = usize::from(n).checked_shl(shift).filter(|_| shift < 32).ok_or(HeaderFault::Damaged)?;
+        pixels[filled..].get_mut(..count).ok_or(HeaderFault::Damaged)?.fill(last);
         (filled, shift) = (filled + count, shift + 8);
     }
     Ok(())

@@ -37,12 +37,12 @@ pub(super) fn power(cosine: f64, complement: f64, &Setting { alpha, .. }: &Setti
 }
 
 /// Lafortune's matrix C with Cx = Cy; Cu is the axis of ωi = u.
-pub(super) struct Axis {
+pub(super) struct LobeAxis {
     pub cxy: f64,
     pub cz: f64,
 }
 
-impl Axis {
+impl LobeAxis {
     /// Phong's.
     pub const MIRROR: Self = Self { cxy: -1.0, cz: 1.0 };
 
@@ -70,7 +70,7 @@ impl Axis {
 /// ```
 ///
 /// and cosⁿ⁺¹β = e^(−r²), qⁿ⁺² = e^(−t²) are analytic maps of both for any n, up to where the rest is small.
-pub(super) fn samples(fixed: &Fixed, axis: &Axis, alpha: f64, tolerance: f64) -> Vec<Sample> {
+pub(super) fn samples(fixed: &Fixed, axis: &LobeAxis, alpha: f64, tolerance: f64) -> Vec<Sample> {
     let (mu, sin) = (fixed.mu, fixed.sin());
     let normal = axis.of(mu, sin);
     let [sin_axis, cos_axis] = normal;

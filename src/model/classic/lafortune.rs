@@ -24,7 +24,7 @@
 use crate::base::quadrature::Node;
 use crate::base::tolerance::decade;
 use crate::model::classic::axis;
-use crate::model::classic::axis::{AXIS_F32, Axis};
+use crate::model::classic::axis::{AXIS_F32, LobeAxis};
 use crate::model::directions::Map;
 use crate::model::half_vector::mean_by;
 use crate::model::parameters::Parameters;
@@ -49,7 +49,7 @@ pub(crate) static MODEL: Model = Model {
         limit: |mu, s| axis::is_narrow(s).then(|| [of(&s.parameters).narrow(mu), 0.0]),
     }),
     lobe: |p, a, s| {
-        let Axis { cxy, cz } = of(&s.parameters);
+        let LobeAxis { cxy, cz } = of(&s.parameters);
         let mu2 = p.mu_i * p.mu_e;
         let cosine = cz * mu2 - cxy * p.ss * (a.cos2 - a.sin2);
         let turned = (1.0 - cxy) * a.sin2 + (1.0 + cxy) * a.cos2;
@@ -79,13 +79,13 @@ static PARAMETERS: [Parameter; 2] = [
     },
 ];
 
-fn of(parameters: &Parameters) -> Axis {
-    Axis { cxy: parameters[CXY], cz: parameters[CZ] }
+fn of(parameters: &Parameters) -> LobeAxis {
+    LobeAxis { cxy: parameters[CXY], cz: parameters[CZ] }
 }
 
 /// 1 − Cx, 1 + Cx and 1 − Cz: of a rounded C they would lose digits, which n multiplies.
 fn derive(parameters: &mut Parameters) {
-    let Axis { cxy, cz } = of(parameters);
+    let LobeAxis { cxy, cz } = of(parameters);
     [parameters[2], parameters[3], parameters[4]] = [1.0 - cxy, 1.0 + cxy, 1.0 - cz];
 }
 

@@ -28,7 +28,7 @@
 //! Kept: finite, bounded, not negative, reciprocal to the bit; energy.
 
 use crate::model::classic::axis;
-use crate::model::classic::axis::{AXIS_F32, Axis};
+use crate::model::classic::axis::{AXIS_F32, LobeAxis};
 use crate::model::directions::Map;
 use crate::model::half_vector;
 use crate::model::{Component, Integral, Model, Shape, part};
@@ -46,7 +46,7 @@ pub(crate) static MODEL: Model = Model {
     parts: &[axis::PART, part!("classic/phong")],
     value_f32: AXIS_F32,
     integral: Integral::Mapped(Map {
-        samples: |fixed, s, tolerance| axis::samples(fixed, &Axis::MIRROR, s.alpha, tolerance),
+        samples: |fixed, s, tolerance| axis::samples(fixed, &LobeAxis::MIRROR, s.alpha, tolerance),
         most: |_, tolerance| axis::most(tolerance),
         mean: Some(half_vector::mean),
         limit: |mu, s| axis::is_narrow(s).then_some([mu, 0.0]),

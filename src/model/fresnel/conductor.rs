@@ -23,7 +23,7 @@
 //! Promises: all of a microfacet model's. F ≤ 1, so that it conserves energy.
 
 use crate::model::fresnel::metals::METALS;
-use crate::model::fresnel::{Counts, Fresnel, exact};
+use crate::model::fresnel::{Fresnel, FresnelCounts, exact};
 use crate::model::parameters::{Parameters, Setting};
 use crate::model::{Component, Metal, Parameter, SlopeCounts, Term, part};
 
@@ -59,7 +59,7 @@ impl Fresnel for Conductor {
         },
     ];
 
-    const COUNTS: Option<Counts> = Some(Counts { near, ..Counts::SCHLICK });
+    const COUNTS: Option<FresnelCounts> = Some(FresnelCounts { near, ..FresnelCounts::SCHLICK });
     const METALS: &'static [Metal] = &METALS;
 
     /// (η + ik)² − 1 in place of η and k.

@@ -19,7 +19,7 @@
 //!
 //! Promises: all of a microfacet model's. F ≤ 1, so that it conserves energy.
 
-use crate::model::fresnel::{Counts, Fresnel, exact};
+use crate::model::fresnel::{Fresnel, FresnelCounts, exact};
 use crate::model::parameters::{Parameters, Setting};
 use crate::model::{Component, Parameter, SlopeCounts, Term, part};
 
@@ -35,7 +35,7 @@ impl Fresnel for Dielectric {
         part: part!("fresnel/dielectric"),
     };
     const COMPONENTS: &'static [Component] = &Component::SPECULAR;
-    const COUNTS: Option<Counts> = Some(Counts { near, ..Counts::SCHLICK });
+    const COUNTS: Option<FresnelCounts> = Some(FresnelCounts { near, ..FresnelCounts::SCHLICK });
     const PARAMETERS: &'static [Parameter] = &[Parameter {
         name: "eta",
         summary: "index of refraction, over that of the medium outside",

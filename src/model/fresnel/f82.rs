@@ -25,7 +25,7 @@
 //!
 //! Promises: all of a microfacet model's. A + B ≤ 1, so that it conserves energy.
 
-use crate::model::fresnel::{Counts, Fresnel};
+use crate::model::fresnel::{Fresnel, FresnelCounts};
 use crate::model::parameters::{Parameters, Setting};
 use crate::model::{Component, Parameter, Term, part};
 
@@ -44,9 +44,9 @@ impl Fresnel for F82 {
     };
     const COMPONENTS: &'static [Component] = &Component::schlick(0.8);
     /// The dip is of degree 7, where Schlick's is 5. Measured: without, 0.55 is off by 1.7 times 1e-6.
-    const COUNTS: Option<Counts> = Some(Counts {
+    const COUNTS: Option<FresnelCounts> = Some(FresnelCounts {
         near: |schlick, s, _| if s.parameters[TINT] < 1.0 { schlick.more(1.25) } else { schlick },
-        ..Counts::SCHLICK
+        ..FresnelCounts::SCHLICK
     });
     const PARAMETERS: &'static [Parameter] = &[Parameter {
         name: "f82",

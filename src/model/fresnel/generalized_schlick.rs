@@ -19,7 +19,7 @@
 //! Promises: all of a microfacet model's. A + B = 1, so that it conserves energy.
 
 use crate::base::tolerance::is_fine;
-use crate::model::fresnel::{Counts, Fresnel};
+use crate::model::fresnel::{Fresnel, FresnelCounts};
 use crate::model::parameters::Setting;
 use crate::model::{Component, Parameter, SlopeCounts, Term, part};
 
@@ -36,7 +36,8 @@ impl Fresnel for GeneralizedSchlick {
     };
     const COMPONENTS: &'static [Component] = &Component::schlick(0.04);
     const VALUE_F32: f64 = EXPONENT_F32;
-    const COUNTS: Option<Counts> = Some(Counts { near: more, far: more, ..Counts::SCHLICK });
+    const COUNTS: Option<FresnelCounts> =
+        Some(FresnelCounts { near: more, far: more, ..FresnelCounts::SCHLICK });
     const PARAMETERS: &'static [Parameter] = &[Parameter {
         name: "exponent",
         summary: "how late F rises: 5 is Schlick's",

@@ -26,7 +26,7 @@ pub(crate) trait Fresnel {
     fn fresnel(c: f64, x: f64, s: &Setting) -> [f64; 2];
 
     /// Node counts. Without them integrals are found by adaptive quadrature.
-    const COUNTS: Option<Counts> = None;
+    const COUNTS: Option<FresnelCounts> = None;
     /// Whether it is a polynomial of c with coefficients of no more than some ones: it then leaves ρ as analytic as the
     /// NDF does, and tables may be spread from few integrals.
     const POLYNOMIAL: bool = false;
@@ -50,7 +50,7 @@ pub(crate) trait Fresnel {
 }
 
 /// Node counts, given those that Schlick's term needs.
-pub(crate) struct Counts {
+pub(crate) struct FresnelCounts {
     /// Where cos φ > 0, the side on which ωi·ωm comes near 0.
     pub near: fn(schlick: SlopeCounts, &Setting, tolerance: f64) -> SlopeCounts,
     /// Where cos φ < 0.
@@ -59,7 +59,7 @@ pub(crate) struct Counts {
     pub mean_nodes: fn(&Setting, tolerance: f64) -> usize,
 }
 
-impl Counts {
+impl FresnelCounts {
     /// Those of Schlick's term.
     pub const SCHLICK: Self =
         Self { near: |schlick, _, _| schlick, far: |schlick, _, _| schlick, mean_nodes: |_, _| 0 };

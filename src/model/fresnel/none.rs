@@ -1,6 +1,6 @@
 //! Perfect mirrors, F = 1, under a constant weight. Twin of `shaders/fresnel/none.wgsl`.
 
-use crate::model::fresnel::{Counts, Fresnel};
+use crate::model::fresnel::{Fresnel, FresnelCounts};
 use crate::model::parameters::Setting;
 use crate::model::{Component, Term, part};
 
@@ -14,7 +14,7 @@ impl Fresnel for Constant {
         part: part!("fresnel/none"),
     };
     // The name that this reflectance has in every other Fresnel term.
-    const COUNTS: Option<Counts> = Some(Counts::SCHLICK);
+    const COUNTS: Option<FresnelCounts> = Some(FresnelCounts::SCHLICK);
     const POLYNOMIAL: bool = true;
     const COMPONENTS: &'static [Component] = &[Component { name: "A", weight: "f0", default: Some(1.0) }];
 

@@ -1,6 +1,6 @@
 //! Schlick 1994, eq. 15, split by what multiplies F0 and F90. Twin of `shaders/fresnel/schlick.wgsl`.
 
-use crate::model::fresnel::{Counts, Fresnel};
+use crate::model::fresnel::{Fresnel, FresnelCounts};
 use crate::model::parameters::Setting;
 use crate::model::{Component, Part, Term, part};
 
@@ -15,7 +15,7 @@ impl Fresnel for Schlick {
         source: "Schlick 1994, eq. 15",
         part: PART,
     };
-    const COUNTS: Option<Counts> = Some(Counts::SCHLICK);
+    const COUNTS: Option<FresnelCounts> = Some(FresnelCounts::SCHLICK);
     const POLYNOMIAL: bool = true;
     const COMPONENTS: &'static [Component] = &Component::schlick(0.04);
 

@@ -41,7 +41,7 @@
 //! where F of the red channel dips through 0, finer ones are not kept. Values: see `FILM_F32`.
 
 use crate::base::tolerance::decade;
-use crate::model::fresnel::{Counts, Fresnel};
+use crate::model::fresnel::{Fresnel, FresnelCounts};
 use crate::model::parameters::{Parameters, Setting};
 use crate::model::{Component, Parameter, SlopeCounts, Term, part};
 use std::cell::Cell;
@@ -66,7 +66,7 @@ impl Fresnel for ThinFilm {
     const VALUE_F32: f64 = FILM_F32;
     /// On the far side ωi·ωm keeps away from 0, where F changes the most. In √μ, F has twice its degree, for which so many
     /// nodes are exact.
-    const COUNTS: Option<Counts> = Some(Counts {
+    const COUNTS: Option<FresnelCounts> = Some(FresnelCounts {
         near: |schlick, s, tolerance| more(schlick, s, tolerance, SlopeCounts { azimuths: 110, nodes: 150 }),
         far: |schlick, s, tolerance| more(schlick, s, tolerance, SlopeCounts { azimuths: 30, nodes: 40 }),
         mean_nodes: degree,

@@ -9,7 +9,7 @@
 //! Accuracy: errors are those of the 7-point rules, and a quarter of the tolerance is theirs; what is kept is the 15-point
 //! rule. A lobe that does not converge within [`most`] evaluations gets NaN, which no table is written with.
 
-use crate::base::cubature::{EVALUATIONS, Measured, Rectangle, kronrod, refine};
+use crate::base::cubature::{CubatureCell, EVALUATIONS, Measured, kronrod, refine};
 use crate::base::half_angle::{Azimuth, Half, Pair};
 use crate::base::quadrature::{Node, gauss_legendre};
 use crate::base::tolerance::is_fine;
@@ -177,7 +177,7 @@ struct Chart<'a> {
 
 impl Chart<'_> {
     /// The rectangles to begin with: no longer than [`LONGEST`], so that none looks converged by luck.
-    fn rectangles(&self, chart: usize) -> Vec<Rectangle> {
+    fn rectangles(&self, chart: usize) -> Vec<CubatureCell> {
         let cuts = |[low, high]: [f64; 2], length: f64| {
             let n = (length / LONGEST).ceil().max(1.0) as usize;
             let at = move |k: usize| low + (high - low) * k as f64 / n as f64;
@@ -185,7 +185,7 @@ impl Chart<'_> {
         };
         let along = cuts([0.0, 1.0], self.length);
         let across = cuts(self.u, self.azimuth.length() * (self.u[1] - self.u[0]));
-        across.iter().flat_map(|&u| along.iter().map(move |&x| Rectangle { chart, u, x })).collect()
+        across.iter().flat_map(|&u| along.iter().map(move |&x| CubatureCell { chart, u, x })).collect()
     }
 }
 
@@ -304,8 +304,8 @@ mod tests {
     /// With no counts and no map, every tolerance is met, at every μ and α, with smooth masking and with one that has kinks.
     #[test]
     fn a_distribution_of_d_and_lambda_alone_meets_every_tolerance() {
-        type Rho = fn(&Fixed, &Setting, f64) -> ([f64; 2], usize);
-        let cases: [(&str, Rho); 4] = [
+        type RhoOfNode = fn(&Fixed, &Setting, f64) -> ([f64; 2], usize);
+        let cases: [(&str, RhoOfNode); 4] = [
             ("ggx", rho::<Bare<Ggx>, SmithCorrelated>),
             ("ggx-v-cavity-schlick", rho::<Bare<Ggx>, VCavity>),
             ("charlie", rho::<Bare<Charlie>, SmithCorrelated>),

@@ -7,7 +7,7 @@
 //! so that Smith's 4 μi μe/G2 is at most 2 (μi + μe), and μi μe ≤ (μi + μe)/2 makes that at most 4 (μi + μe − μi μe).
 //! Kept: finite but where both directions graze, not negative, reciprocal; energy.
 
-use crate::model::masking::{Counts, Masking, Toward};
+use crate::model::masking::{Masking, MaskingCounts, Toward};
 use crate::model::ndf::Ndf;
 use crate::model::parameters::Setting;
 use crate::model::{Term, part};
@@ -25,7 +25,7 @@ impl Masking for AshikhminNeubelt {
     const SPREADS: bool = false;
 
     /// Where correlated Smith is nearly constant, this is not: measured; none leaves 3.7 times 1e-7.
-    const COUNTS: Option<Counts> = Some(|correlated, _| correlated.map(|counts| counts.more(1.25)));
+    const COUNTS: Option<MaskingCounts> = Some(|correlated, _| correlated.map(|counts| counts.more(1.25)));
 
     fn visibility<N: Ndf>(i: &Toward, e: &Toward) -> f64 {
         let (small, large) = (i.mu.min(e.mu), i.mu.max(e.mu));

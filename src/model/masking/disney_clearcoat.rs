@@ -7,7 +7,7 @@
 //! reflect up to 0.5 to 1.4 where ωi grazes. Broken beyond: ρ_dh of GGX reaches 1.8 at α = 1/2 and 3.4 at 1, of unequal α
 //! up to 10 it reaches 22.6, and of Charlie 4.3 at α = 1 and 19.2 at 1/200.
 
-use crate::model::masking::{Counts, Masking, Toward};
+use crate::model::masking::{Masking, MaskingCounts, Toward};
 use crate::model::ndf::Ndf;
 use crate::model::parameters::Setting;
 use crate::model::{Term, part};
@@ -25,7 +25,7 @@ impl Masking for DisneyClearcoat {
     const SPREADS: bool = false;
 
     /// G1 bends at μ ~ 1/4 where the normals' own Λ, of a small α, is nearly constant: measured.
-    const COUNTS: Option<Counts> =
+    const COUNTS: Option<MaskingCounts> =
         Some(|correlated, tolerance| correlated.map(|counts| counts.more(1.25).at_least([4, 5], tolerance)));
 
     fn visibility<N: Ndf>(i: &Toward, e: &Toward) -> f64 {

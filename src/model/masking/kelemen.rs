@@ -6,7 +6,7 @@
 
 use crate::base::half_angle::{Half, Pair};
 use crate::model::half_vector::Kinks;
-use crate::model::masking::{Counts, Masking, Toward};
+use crate::model::masking::{Masking, MaskingCounts, Toward};
 use crate::model::ndf::Ndf;
 use crate::model::{SlopeCounts, Term, part};
 
@@ -20,7 +20,7 @@ impl Masking for Kelemen {
         part: part!("masking/kelemen"),
     };
     const OF_NORMAL: Option<Kinks> = Some(KINKS);
-    const COUNTS: Option<Counts> =
+    const COUNTS: Option<MaskingCounts> =
         Some(|correlated, tolerance| correlated.map(|side| counts(side, tolerance)));
 
     fn visibility<N: Ndf>(_i: &Toward, _e: &Toward) -> f64 {

@@ -42,7 +42,7 @@ pub(crate) trait Masking {
 
     /// Node counts where cos φ > 0, the side on which the horizon turns, and where cos φ < 0, given those that
     /// height-correlated Smith needs. Without them integrals are found by adaptive quadrature.
-    const COUNTS: Option<Counts> = None;
+    const COUNTS: Option<MaskingCounts> = None;
 
     /// Whether ρ has the branch points of the NDF alone, so that tables of it may be spread from few integrals.
     const SPREADS: bool = false;
@@ -72,4 +72,4 @@ pub(crate) trait Masking {
 }
 
 /// Node counts of both sides for a tolerance, given those that height-correlated Smith needs.
-pub(crate) type Counts = fn(correlated: [SlopeCounts; 2], tolerance: f64) -> [SlopeCounts; 2];
+pub(crate) type MaskingCounts = fn(correlated: [SlopeCounts; 2], tolerance: f64) -> [SlopeCounts; 2];

@@ -1,12 +1,12 @@
 //! Schlick's masking, whatever its k: G1 = μ / (μ (1 − k) + k). Twin of `shaders/masking/schlick.wgsl`.
 
 use crate::model::Term;
-use crate::model::masking::{Counts, Masking, Toward};
+use crate::model::masking::{Masking, MaskingCounts, Toward};
 use crate::model::ndf::Ndf;
 use crate::model::parameters::Setting;
 
 /// A choice of k.
-pub(crate) trait Schlick {
+pub(crate) trait SchlickMasking {
     const TERM: Term;
 
     const UNBOUNDED_OFF_PEAK: Option<&'static str> = None;
@@ -15,11 +15,11 @@ pub(crate) trait Schlick {
     fn k(alpha: f64) -> f64;
 }
 
-impl<S: Schlick> Masking for S {
+impl<S: SchlickMasking> Masking for S {
     const TERM: Term = S::TERM;
     const UNBOUNDED_OFF_PEAK: Option<&'static str> = S::UNBOUNDED_OFF_PEAK;
 
-    const COUNTS: Option<Counts> = Some(|correlated, _| correlated.map(|counts| counts.more(1.25)));
+    const COUNTS: Option<MaskingCounts> = Some(|correlated, _| correlated.map(|counts| counts.more(1.25)));
     const SPREADS: bool = true;
 
     fn visibility<N: Ndf>(i: &Toward, e: &Toward) -> f64 {

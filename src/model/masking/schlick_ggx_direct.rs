@@ -3,16 +3,16 @@
 //!
 //! It masks even a mirror: as α → 0, k → 1/8. It keeps energy and reciprocity.
 
-use crate::model::masking::schlick::Schlick;
+use crate::model::masking::schlick::SchlickMasking;
 use crate::model::{Term, part};
 
 pub(crate) struct SchlickGgxDirect;
 
-impl Schlick for SchlickGgxDirect {
+impl SchlickMasking for SchlickGgxDirect {
     const TERM: Term = Term {
         name: "schlick-ggx-direct",
         summary: "Schlick's G with k = (r + 1)²/8, for lights",
-        source: "Schlick 1994; Karis 2013, Real Shading in Unreal Engine 4",
+        source: "SchlickMasking 1994; Karis 2013, Real Shading in Unreal Engine 4",
         part: part!("masking/schlick_ggx_direct", "masking/schlick"),
     };
 

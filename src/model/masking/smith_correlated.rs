@@ -1,7 +1,7 @@
 //! Smith's masking-shadowing at correlated heights: Heitz 2014, eq. 99. Twin of
 //! `shaders/masking/smith_correlated.wgsl`.
 
-use crate::model::masking::{Counts, Masking, Toward};
+use crate::model::masking::{Masking, MaskingCounts, Toward};
 use crate::model::ndf::Ndf;
 use crate::model::parameters::Setting;
 use crate::model::{Term, part};
@@ -15,7 +15,7 @@ impl Masking for SmithCorrelated {
         source: "Heitz 2014, eq. 99",
         part: part!("masking/smith_correlated"),
     };
-    const COUNTS: Option<Counts> = Some(|correlated, _| correlated);
+    const COUNTS: Option<MaskingCounts> = Some(|correlated, _| correlated);
     const SPREADS: bool = true;
 
     fn visibility<N: Ndf>(i: &Toward, e: &Toward) -> f64 {

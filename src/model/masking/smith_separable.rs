@@ -2,7 +2,7 @@
 //! `shaders/masking/smith_separable.wgsl`.
 
 use crate::base::tolerance::is_fine;
-use crate::model::masking::{Counts, Masking, Toward};
+use crate::model::masking::{Masking, MaskingCounts, Toward};
 use crate::model::ndf::Ndf;
 use crate::model::parameters::Setting;
 use crate::model::{Term, part};
@@ -19,7 +19,7 @@ impl Masking for SmithSeparable {
 
     /// More on the near side: for μ ≪ α its G2 bends where G1(ωi) does, which correlated heights wash out by
     /// Λ(ωe). Measured: an eighth more leaves 1.1 times 1e-6.
-    const COUNTS: Option<Counts> =
+    const COUNTS: Option<MaskingCounts> =
         Some(|[near, far], tolerance| [if is_fine(tolerance) { near } else { near.more(1.25) }, far]);
     const SPREADS: bool = true;
 

@@ -7,7 +7,7 @@
 
 use crate::base::half_angle::{Half, Pair};
 use crate::model::half_vector::{DirectionKinks, Kinks};
-use crate::model::masking::{Counts, Masking, Toward};
+use crate::model::masking::{Masking, MaskingCounts, Toward};
 use crate::model::ndf::Ndf;
 use crate::model::{Term, part};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI};
@@ -31,7 +31,7 @@ impl Masking for VCavity {
     });
 
     /// Where correlated Smith is nearly constant, kinks are not: measured.
-    const COUNTS: Option<Counts> =
+    const COUNTS: Option<MaskingCounts> =
         Some(|correlated, tolerance| correlated.map(|counts| counts.at_least([4, 3], tolerance)));
 
     fn visibility<N: Ndf>(i: &Toward, e: &Toward) -> f64 {

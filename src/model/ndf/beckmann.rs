@@ -8,7 +8,7 @@
 use crate::base::half_angle::Half;
 use crate::base::tolerance::decade;
 use crate::model::ndf::stretched::Stretch;
-use crate::model::ndf::{Albedo, Coordinate, Map, Maps, Ndf, Rounding, Rule};
+use crate::model::ndf::{AlbedoBounds, Coordinate, CountRule, MappedSlope, Maps, Ndf, Rounding};
 use crate::model::parameters::Setting;
 use crate::model::{SlopeCounts, Term, part};
 use libm::erf;
@@ -29,14 +29,15 @@ impl Ndf for Beckmann {
     };
     const F32: Rounding = Rounding { value: BECKMANN_F32, ..Rounding::USUAL };
     /// Measured, of α = 1 where ωi grazes.
-    const ALBEDO: Albedo = Albedo { bounds: &[("disney-clearcoat", 2.181)], ..Albedo::CONSERVED };
+    const ALBEDO: AlbedoBounds =
+        AlbedoBounds { bounds: &[("disney-clearcoat", 2.181)], ..AlbedoBounds::CONSERVED };
     const MAPS: Option<Maps> = Some(Maps {
         coarse: Coordinate { end: |t_max, s| (t_max / s.alpha).min(4.3), map },
         fine: Coordinate { end: |t_max, s| (t_max / s.alpha).min(5.5), map },
     });
-    const RULE: Option<Rule> = Some(Rule {
+    const RULE: Option<CountRule> = Some(CountRule {
         kernels: Some([part!("ndf/beckmann_coarse"), part!("ndf/beckmann_fine")]),
-        ..Rule::new(|_, _, tolerance| [counts(tolerance); 2])
+        ..CountRule::new(|_, _, tolerance| [counts(tolerance); 2])
     });
 
     fn ndf(h: &Half, hz2: f64, &Setting { alpha, .. }: &Setting) -> f64 {
@@ -75,6 +76,6 @@ impl Stretch for Beckmann {
         [[4, 6], [6, 8], [8, 11], [12, 20], [18, 34], [28, 72], [36, 98], [36, 98], [36, 98], [36, 98]];
 }
 
-fn map(r: f64, &Setting { alpha, .. }: &Setting) -> Map {
-    Map { p: alpha * r, m: 1.0, weight: 2.0 * r * (-r * r).exp() }
+fn map(r: f64, &Setting { alpha, .. }: &Setting) -> MappedSlope {
+    MappedSlope { p: alpha * r, m: 1.0, weight: 2.0 * r * (-r * r).exp() }
 }

@@ -17,7 +17,7 @@
 
 use crate::base::half_angle::Half;
 use crate::model::ndf::beckmann::{self, Beckmann};
-use crate::model::ndf::{Albedo, Coordinate, Map, Maps, Ndf, Rounding, Rule};
+use crate::model::ndf::{AlbedoBounds, Coordinate, CountRule, MappedSlope, Maps, Ndf, Rounding};
 use crate::model::parameters::Setting;
 use crate::model::{SlopeCounts, Term, part};
 use std::f64::consts::FRAC_1_PI;
@@ -37,9 +37,9 @@ impl Ndf for BlinnPhong {
     };
     const F32: Rounding = Rounding { value: BLINN_PHONG_F32, ..Rounding::USUAL };
     /// √π, and measured; of α = 1 at grazing.
-    const ALBEDO: Albedo = Albedo {
+    const ALBEDO: AlbedoBounds = AlbedoBounds {
         bounds: &[("smith-correlated", 1.7725), ("smith-separable", 1.345), ("disney-clearcoat", 3.438)],
-        ..Albedo::CONSERVED
+        ..AlbedoBounds::CONSERVED
     };
     const MAPS: Option<Maps> = Some(Maps {
         coarse: Coordinate { end: |t_max, s| end(t_max, 4.3, s), map },
@@ -47,7 +47,7 @@ impl Ndf for BlinnPhong {
     });
     /// Beckmann's, and two nodes more for the tail of α near 1: measured from α = 1e-6 on, each count alone leaves less than
     /// a third of the tolerance.
-    const RULE: Option<Rule> = Some(Rule::new(|_, _, tolerance| {
+    const RULE: Option<CountRule> = Some(CountRule::new(|_, _, tolerance| {
         let counts = beckmann::counts(tolerance);
         [SlopeCounts { nodes: counts.nodes + 2, ..counts }; 2]
     }));
@@ -63,8 +63,8 @@ impl Ndf for BlinnPhong {
 }
 
 /// cos²θm = exp(−α² r²), so that D cos θm dωm = 2r e^(−r²) dr dφ/2π, as Beckmann's.
-fn map(r: f64, &Setting { alpha, .. }: &Setting) -> Map {
-    Map { p: (alpha * r).powi(2).exp_m1().sqrt(), m: 1.0, weight: 2.0 * r * (-r * r).exp() }
+fn map(r: f64, &Setting { alpha, .. }: &Setting) -> MappedSlope {
+    MappedSlope { p: (alpha * r).powi(2).exp_m1().sqrt(), m: 1.0, weight: 2.0 * r * (-r * r).exp() }
 }
 
 /// r at which tan θm reaches `t_max`, or beyond which e^(−most²) is left of the weight: of e^(−r²), which G2 and

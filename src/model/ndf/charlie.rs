@@ -23,7 +23,7 @@
 //! with none.
 
 use crate::base::half_angle::Half;
-use crate::model::ndf::{Albedo, Directions, Ndf, Rounding, Rule, charlie_map};
+use crate::model::ndf::{AlbedoBounds, CountRule, Directions, Ndf, Rounding, charlie_map};
 use crate::model::parameters::Setting;
 use crate::model::{Shape, Term, part};
 use std::f64::consts::TAU;
@@ -52,7 +52,7 @@ impl Ndf for Charlie {
     const SHAPE: Shape = Shape::SHEEN;
     /// The seam is where Λ's branches meet. Bounds are measured, where ωi grazes: at α = 1/200, but of smith-separable,
     /// whose is at 1.
-    const ALBEDO: Albedo = Albedo {
+    const ALBEDO: AlbedoBounds = AlbedoBounds {
         is_mirror_at_0: false,
         bounds: &[
             ("smith-correlated", 8.98),
@@ -62,7 +62,7 @@ impl Ndf for Charlie {
             ("disney-clearcoat", 19.22),
         ],
         seam: Some(0.5),
-        ..Albedo::CONSERVED
+        ..AlbedoBounds::CONSERVED
     };
     /// |h|² sin²θm leaves f32 below 2⁻¹²⁶, sin θm below 1e-19 of |h|: at α = 1, where D is in proportion to it, that is 1e-19
     /// in f, which is within 1e-6 of values from `faint` on.
@@ -72,7 +72,7 @@ impl Ndf for Charlie {
         faint: Some(1e-13),
         ..Rounding::USUAL
     };
-    const RULE: Option<Rule> = Some(Rule {
+    const RULE: Option<CountRule> = Some(CountRule {
         directions: Some(Directions {
             samples: |fixed, _, [counts, _], tolerance, of_normal| {
                 charlie_map::samples(fixed.mu, &fixed.kinks, counts, tolerance, of_normal)
@@ -80,7 +80,7 @@ impl Ndf for Charlie {
             most: |[counts, _], of_normal| charlie_map::most(counts, of_normal),
         }),
         means: Some([charlie_map::mean, charlie_map::mean_with_kinks]),
-        ..Rule::new(|_, _, tolerance| charlie_map::counts(tolerance))
+        ..CountRule::new(|_, _, tolerance| charlie_map::counts(tolerance))
     });
 
     fn ndf(h: &Half, hz2: f64, &Setting { alpha, .. }: &Setting) -> f64 {

@@ -3,7 +3,7 @@
 use crate::base::half_angle::Half;
 use crate::model::ndf::stretched::Stretch;
 use crate::model::ndf::{
-    Albedo, Coordinate, Draws, Maps, Ndf, Rule, ggx_coarse, ggx_fine, ggx_nodes, ggx_samples,
+    AlbedoBounds, Coordinate, CountRule, Draws, Maps, Ndf, ggx_coarse, ggx_fine, ggx_nodes, ggx_samples,
 };
 use crate::model::parameters::Setting;
 use crate::model::{Branches, Term, part};
@@ -19,7 +19,8 @@ impl Ndf for Ggx {
         part: part!("ndf/ggx", "ndf/smith_of_ggx"),
     };
     /// Measured, of α = 1 where ωi grazes.
-    const ALBEDO: Albedo = Albedo { bounds: &[("disney-clearcoat", 3.438)], ..Albedo::CONSERVED };
+    const ALBEDO: AlbedoBounds =
+        AlbedoBounds { bounds: &[("disney-clearcoat", 3.438)], ..AlbedoBounds::CONSERVED };
     const MAPS: Option<Maps> = Some(Maps {
         coarse: Coordinate {
             end: |t_max, s| ggx_coarse::map_end(t_max, s.alpha),
@@ -32,10 +33,10 @@ impl Ndf for Ggx {
     });
     /// Smith's root α² + (1 − α²) μ² vanishes at μ = ±iα/√(1 − α²), and the map ends at its own branch point,
     /// α = ±i t_max, at μ = ±2iα/(1 − α²). Measured by `print_the_error_of_interpolation` (`src/integrate/chebyshev.rs`): 1 is too little by a third.
-    const RULE: Option<Rule> = Some(Rule {
+    const RULE: Option<CountRule> = Some(CountRule {
         kernels: Some([ggx_coarse::PART, ggx_fine::PART]),
         branches: Some(Branches { strength: 24.0 }),
-        ..Rule::new(|mu, s, tolerance| ggx_nodes::counts(mu, s.alpha, tolerance))
+        ..CountRule::new(|mu, s, tolerance| ggx_nodes::counts(mu, s.alpha, tolerance))
     });
     const DRAWS: Option<Draws> = Some(ggx_samples::DRAWS);
 

@@ -1,7 +1,7 @@
 //! The map of GGX's slopes for tolerances down to 1e-6. Twin of `shaders/ndf/ggx_coarse.wgsl`,
 //! which has the derivation.
 
-use crate::model::ndf::Map;
+use crate::model::ndf::MappedSlope;
 use crate::model::ndf::ggx::TAN_CAP;
 use crate::model::{Part, part};
 
@@ -14,10 +14,10 @@ pub(crate) fn map_end(t_max: f64, alpha: f64) -> f64 {
     0.5 * sinh_v / (cosh_2 * (1.0 + cosh_2))
 }
 
-pub(crate) fn map(r: f64, alpha: f64) -> Map {
+pub(crate) fn map(r: f64, alpha: f64) -> MappedSlope {
     let r2 = r * r;
     let b = 1.0 - r2;
     let ra = r + r * r2;
     let s = 1.0 + r2 * (6.0 + r2);
-    Map { p: 4.0 * alpha * ra, m: b * b, weight: 32.0 * ra * b / (s * s * s) }
+    MappedSlope { p: 4.0 * alpha * ra, m: b * b, weight: 32.0 * ra * b / (s * s * s) }
 }

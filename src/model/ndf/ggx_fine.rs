@@ -1,7 +1,7 @@
 //! The map of GGX's slopes for tolerances below 1e-6. Twin of `shaders/ndf/ggx_fine.wgsl`,
 //! which has the derivation.
 
-use crate::model::ndf::Map;
+use crate::model::ndf::MappedSlope;
 use crate::model::ndf::ggx::TAN_CAP;
 use crate::model::{Part, part};
 
@@ -15,11 +15,11 @@ pub(crate) fn map_end(t_max: f64, alpha: f64) -> f64 {
     0.25 * sinh_v / (cosh_2 * cosh_4 * (1.0 + cosh_4))
 }
 
-pub(crate) fn map(r: f64, alpha: f64) -> Map {
+pub(crate) fn map(r: f64, alpha: f64) -> MappedSlope {
     let r2 = r * r;
     let b = 1.0 - r2;
     let ra = r + r * r2;
     let s = 1.0 + r2 * (6.0 + r2);
     let cosh = s * s + 16.0 * ra * ra;
-    Map { p: 8.0 * alpha * ra * s, m: b.powi(4), weight: 128.0 * ra * s * b.powi(3) / cosh.powi(3) }
+    MappedSlope { p: 8.0 * alpha * ra * s, m: b.powi(4), weight: 128.0 * ra * s * b.powi(3) / cosh.powi(3) }
 }

@@ -26,7 +26,7 @@ use crate::base::tolerance::{decade, is_fine};
 use crate::model::directions::{Fixed, Sample};
 use crate::model::half_vector;
 use crate::model::half_vector::{HorizonTurn, Kinks};
-use crate::model::ndf::{Albedo, Coordinate, Directions, Map, Maps, Ndf, Rounding, Rule};
+use crate::model::ndf::{AlbedoBounds, Coordinate, CountRule, Directions, MappedSlope, Maps, Ndf, Rounding};
 use crate::model::parameters::Setting;
 use crate::model::{Parameter, Shape, SlopeCounts, Term, part};
 use std::f64::consts::{FRAC_1_PI, TAU};
@@ -71,7 +71,7 @@ impl Ndf for Gtr {
         faint: None,
     };
     /// [`side`]/α of γ = 1 and α = 1/1000, where ωi grazes; the others' measured there, and of the clearcoat's at α = 1.
-    const ALBEDO: Albedo = Albedo {
+    const ALBEDO: AlbedoBounds = AlbedoBounds {
         bounds: &[
             ("smith-correlated", 144.63),
             ("smith-separable", 144.63),
@@ -80,20 +80,20 @@ impl Ndf for Gtr {
             ("disney-clearcoat", 3.438),
         ],
         bound_at,
-        ..Albedo::CONSERVED
+        ..AlbedoBounds::CONSERVED
     };
     /// tan θm = α sinh v; beyond the cap, the lobe has 1e-12 of its weight, and of what G2 leaves of (ωe·ωm)/μe.
     const MAPS: Option<Maps> = Some(Maps {
         coarse: Coordinate { end: |t_max, s| end(t_max, 18.0, s), map },
         fine: Coordinate { end: |t_max, s| end(t_max, 30.0, s), map },
     });
-    const RULE: Option<Rule> = Some(Rule {
+    const RULE: Option<CountRule> = Some(CountRule {
         directions: Some(Directions {
             samples,
             most: |counts, of_normal| 2 * half_vector::most(&of_normal.unwrap_or(Kinks::NONE), counts),
         }),
         means: Some([mean, half_vector::mean]),
-        ..Rule::new(counts)
+        ..CountRule::new(counts)
     });
 
     fn ndf(h: &Half, hz2: f64, s: &Setting) -> f64 {
@@ -107,14 +107,14 @@ impl Ndf for Gtr {
     }
 }
 
-fn map(v: f64, s: &Setting) -> Map {
+fn map(v: f64, s: &Setting) -> MappedSlope {
     let (sinh, cosh) = (v.sinh(), v.cosh());
     let tan = s.alpha * sinh;
     let h2 = 1.0 + tan * tan;
     let half = Half { ht2: tan * tan, h2, c: 1.0, one_minus_c: 0.0 };
     // D cos θm dωm = 2π D t/(1 + t²)² dt dφ/2π
     let weight = TAU * Gtr::ndf(&half, 1.0, s) * tan / (h2 * h2) * s.alpha * cosh;
-    Map { p: tan, m: 1.0, weight }
+    MappedSlope { p: tan, m: 1.0, weight }
 }
 
 fn samples(

@@ -44,13 +44,13 @@ pub(crate) trait Ndf: Sized {
     /// α along the tangent and along the bitangent, where they differ.
     const AXES: Option<fn(&Setting) -> [f64; 2]> = None;
     /// Bounds and limits of ρ.
-    const ALBEDO: Albedo = Albedo::CONSERVED;
+    const ALBEDO: AlbedoBounds = AlbedoBounds::CONSERVED;
     /// The errors of f32.
     const F32: Rounding = Rounding::USUAL;
     /// A coordinate of tan θm in which the lobe is flat.
     const MAPS: Option<Maps> = None;
     /// Node counts of its integrals. Without them integrals are found by adaptive quadrature.
-    const RULE: Option<Rule> = None;
+    const RULE: Option<CountRule> = None;
     /// How normals are drawn, for the rules that sample.
     const DRAWS: Option<Draws> = None;
 
@@ -61,7 +61,7 @@ pub(crate) trait Ndf: Sized {
 }
 
 /// Bounds and limits of ρ.
-pub(crate) struct Albedo {
+pub(crate) struct AlbedoBounds {
     /// Whether shape 0 is the ideal mirror.
     pub is_mirror_at_0: bool,
     /// The maskings with which ρ_dh exceeds 1, and its bound there: none, unless Λ is not Smith's of these normals, or not of
@@ -73,7 +73,7 @@ pub(crate) struct Albedo {
     pub seam: Option<f64>,
 }
 
-impl Albedo {
+impl AlbedoBounds {
     /// Energy is conserved, and α → 0 is the mirror.
     pub const CONSERVED: Self =
         Self { is_mirror_at_0: true, bounds: &[], bound_at: |_| f64::INFINITY, seam: None };
@@ -120,18 +120,18 @@ pub(crate) struct Coordinate {
     /// r at which tan θm reaches `t_max`, or at which the rest of the lobe is negligible.
     pub end: fn(t_max: f64, &Setting) -> f64,
     /// tan θm at r.
-    pub map: fn(r: f64, &Setting) -> Map,
+    pub map: fn(r: f64, &Setting) -> MappedSlope,
 }
 
 /// A map's tan θm = p/m at r, and `weight` = w dv/dr / m, where D cos θm dωm = w dv dφ / 2π.
-pub(crate) struct Map {
+pub(crate) struct MappedSlope {
     pub p: f64,
     pub m: f64,
     pub weight: f64,
 }
 
 /// Node counts of integrals with height-correlated Smith and Schlick, and what goes by them.
-pub(crate) struct Rule {
+pub(crate) struct CountRule {
     /// The counts of a texel for a tolerance, where cos φ > 0 and where it is < 0.
     pub counts: fn(mu: f64, &Setting, tolerance: f64) -> [SlopeCounts; 2],
     /// The shaders of the maps, the coarse one first, for the kernel that integrates in slopes.
@@ -145,7 +145,7 @@ pub(crate) struct Rule {
     pub means: Option<[Mean; 2]>,
 }
 
-impl Rule {
+impl CountRule {
     /// The counts alone.
     pub const fn new(counts: fn(f64, &Setting, f64) -> [SlopeCounts; 2]) -> Self {
         Self { counts, kernels: None, branches: None, directions: None, means: None }

@@ -16,7 +16,7 @@
 
 use crate::base::half_angle::Half;
 use crate::base::tolerance::decade;
-use crate::model::ndf::{Albedo, Maps, Ndf, Rounding, Rule};
+use crate::model::ndf::{AlbedoBounds, CountRule, Maps, Ndf, Rounding};
 use crate::model::parameters::{Parameters, Setting};
 use crate::model::{ALPHA_MIN_VALUE, Parameter, Shape, SlopeCounts, Term};
 use std::marker::PhantomData;
@@ -29,7 +29,7 @@ pub(crate) trait Stretch: Ndf {
     /// of the larger α to the other. A component of the tangential half vector is off by 4 √2 roundings of its length, which
     /// is at worst r/2 times as much of ht² (stretched); D has that twice (GGX), or times its exponent (Beckmann).
     const ROUNDINGS: [f64; 2];
-    /// As [`Albedo::bounds`], measured where α = 1 and the aspect is 100: along grooves of αx = 10.
+    /// As [`AlbedoBounds::bounds`], measured where α = 1 and the aspect is 100: along grooves of αx = 10.
     const BOUNDS: &'static [(&'static str, f64)];
     /// Azimuths of each of eight panels and nodes of each azimuth, for tolerances 1e-1 … 1e-10: their errors alone are below
     /// half of these, worst over μ, φ, α and aspects of 0.01 to 100, down to 1e-7. Finer ones would take more turns of a loop
@@ -66,7 +66,7 @@ impl<N: Stretch> Ndf for Stretched<N> {
         },
     ];
     const AXES: Option<fn(&Setting) -> [f64; 2]> = Some(axes);
-    const ALBEDO: Albedo = Albedo { bounds: N::BOUNDS, ..Albedo::CONSERVED };
+    const ALBEDO: AlbedoBounds = AlbedoBounds { bounds: N::BOUNDS, ..AlbedoBounds::CONSERVED };
     const F32: Rounding = Rounding {
         value: (N::ROUNDINGS[0] + N::ROUNDINGS[1]) / (1 << 24) as f64,
         value_at: Some(|s| {
@@ -80,7 +80,7 @@ impl<N: Stretch> Ndf for Stretched<N> {
         Some(maps) => Some(Maps::both(maps.fine)),
         None => None,
     };
-    const RULE: Option<Rule> = Some(Rule::new(|_, _, tolerance| {
+    const RULE: Option<CountRule> = Some(CountRule::new(|_, _, tolerance| {
         let [azimuths, nodes] = N::COUNTS[decade(tolerance)];
         [SlopeCounts { azimuths, nodes }; 2]
     }));

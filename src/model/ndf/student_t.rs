@@ -27,7 +27,7 @@
 //! 11 with disney-clearcoat, each at α = 1. α → 0 is the mirror.
 
 use crate::base::half_angle::{Half, MU_MIN};
-use crate::model::ndf::{Albedo, Ndf, Rounding};
+use crate::model::ndf::{AlbedoBounds, Ndf, Rounding};
 use crate::model::parameters::{Parameters, Setting};
 use crate::model::{Parameter, Term, part};
 use libm::tgamma;
@@ -79,7 +79,7 @@ impl Ndf for StudentT {
         ..Rounding::USUAL
     };
     /// The quotient of both (1 + 2Λ) μ where ωi grazes, of γ = 1.6 and α = 1: no masking exceeds it.
-    const ALBEDO: Albedo = Albedo {
+    const ALBEDO: AlbedoBounds = AlbedoBounds {
         bounds: &[
             ("schlick-ggx", 2.80),
             ("schlick-ggx-direct", 2.80),
@@ -87,7 +87,7 @@ impl Ndf for StudentT {
             ("smith-joint-approx", 2.80),
             ("disney-clearcoat", 11.2),
         ],
-        ..Albedo::CONSERVED
+        ..AlbedoBounds::CONSERVED
     };
 
     fn derive(parameters: &mut Parameters) {

@@ -42,7 +42,7 @@ const MAX_SCANS: usize = 100;
 #[derive(Default)]
 struct Walk<'a> {
     rest: &'a [u8],
-    components: Vec<Component>,
+    components: Vec<JpegComponent>,
     progressive: bool,
     /// The size in texels.
     size: [usize; 2],
@@ -56,7 +56,7 @@ struct Walk<'a> {
 }
 
 #[derive(Clone)]
-struct Component {
+struct JpegComponent {
     id: u8,
     /// How many blocks it has in a unit of all components.
     sampling: [usize; 2],
@@ -99,7 +99,7 @@ impl<'a> Walk<'a> {
         let [8, _, _, _, _, count, rest @ ..] = segment else { return Err(broken.into()) };
         self.size = [usize::from(short(segment, 3)?), usize::from(short(segment, 1)?)];
         self.progressive = progressive;
-        let components = rest.chunks_exact(3).map(|c| Component {
+        let components = rest.chunks_exact(3).map(|c| JpegComponent {
             id: c[0],
             sampling: [c[1] >> 4, c[1] & 15].map(usize::from),
             quantiser: usize::from(c[2] & 3),
@@ -115,7 +115,7 @@ impl<'a> Walk<'a> {
         check_size(self.size.map(|side| side as u32))?;
         // A block has at least one bit.
         let units: usize = self.units().iter().product();
-        let blocks = |component: &Component| units * component.sampling.iter().product::<usize>();
+        let blocks = |component: &JpegComponent| units * component.sampling.iter().product::<usize>();
         if self.components.iter().map(blocks).sum::<usize>() > 8 * self.rest.len() {
             return Err(EARLY.into());
         }
@@ -163,8 +163,12 @@ impl<'a> Walk<'a> {
         let count = usize::from(*header.first().ok_or(broken)?);
         let (chosen, tail) = header[1..].split_at_checked(2 * count).ok_or(broken)?;
         let &[first, last, bits] = tail else { return Err(broken.into()) };
-        let scan =
-            Band { first: usize::from(first), last: usize::from(last), high: bits >> 4, low: bits & 15 };
+        let scan = SpectralBand {
+            first: usize::from(first),
+            last: usize::from(last),
+            high: bits >> 4,
+            low: bits & 15,
+        };
         if scan.first > scan.last || scan.last > 63 || !(1..=4).contains(&count) || scan.low > 13 {
             return Err(broken.into());
         }
@@ -234,7 +238,7 @@ impl<'a> Walk<'a> {
 
     /// The end of the file: every bit of every coefficient must have been there.
     fn end(&self) -> Result<(), String> {
-        let whole = |component: &Component| component.low == [0; 64];
+        let whole = |component: &JpegComponent| component.low == [0; 64];
         if self.components.is_empty() || !self.components.iter().all(whole) {
             return Err("scans of it are missing".into());
         }
@@ -243,7 +247,7 @@ impl<'a> Walk<'a> {
 }
 
 /// The coefficients and bits of a scan.
-struct Band {
+struct SpectralBand {
     first: usize,
     last: usize,
     high: u8,
@@ -264,7 +268,7 @@ struct Block<'s, 'a> {
     bits: &'s mut Bits<'a>,
     state: &'s mut State,
     tables: [Option<&'s Codes>; 2],
-    band: &'s Band,
+    band: &'s SpectralBand,
 }
 
 impl Block<'_, '_> {

@@ -31,8 +31,8 @@ impl<'a> Document<'a> {
         })
     }
 
-    pub fn root(&'a self, table: &'a Spanned<DeTable<'a>>) -> Fields<'a> {
-        Fields { document: self, at: table.span().start, name: "the recipe", table: table.get_ref() }
+    pub fn root(&'a self, table: &'a Spanned<DeTable<'a>>) -> TableFields<'a> {
+        TableFields { document: self, at: table.span().start, name: "the recipe", table: table.get_ref() }
     }
 
     /// "recipe.toml: line 7"
@@ -137,14 +137,14 @@ impl<'a> Item<'a> {
     }
 
     /// A table with no other keys than these.
-    pub fn table(&self, keys: &[&str]) -> Result<Fields<'a>> {
+    pub fn table(&self, keys: &[&str]) -> Result<TableFields<'a>> {
         self.any_table()?.only(keys)
     }
 
     /// A table whose keys are yet to be checked.
-    pub fn any_table(&self) -> Result<Fields<'a>> {
+    pub fn any_table(&self) -> Result<TableFields<'a>> {
         let table = self.value.as_table().ok_or_else(|| self.wants("a table { … }"))?;
-        Ok(Fields { document: self.document, at: self.at, name: self.name, table })
+        Ok(TableFields { document: self.document, at: self.at, name: self.name, table })
     }
 
     fn wants(&self, what: &str) -> Error {
@@ -153,14 +153,14 @@ impl<'a> Item<'a> {
 }
 
 /// A table of the recipe.
-pub struct Fields<'a> {
+pub struct TableFields<'a> {
     document: &'a Document<'a>,
     at: usize,
     name: &'a str,
     table: &'a DeTable<'a>,
 }
 
-impl<'a> Fields<'a> {
+impl<'a> TableFields<'a> {
     /// Refuses the first key that is not one of these.
     pub fn only(self, keys: &[&str]) -> Result<Self> {
         let unknown = self.entries().filter(|entry| !keys.contains(&entry.name)).min_by_key(|entry| entry.at);
