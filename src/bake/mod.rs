@@ -123,7 +123,7 @@ impl Evaluator {
     pub(crate) fn path(&self, plan: &TablePlan) -> Path<'_> {
         let integral = plan.quantity().is_integral();
         match (self, plan.precision()) {
-            (_, precision) if integral && has_listed_directions(plan) => Path::Cpu(precision),
+            (_, precision) if has_listed_directions(plan) => Path::Cpu(precision),
             (Self::Device(device), Precision::F32) => Path::Device(device, Precision::F32),
             (Self::Device(device), Precision::F64) if device.has_f64() && integral => {
                 Path::Device(device, Precision::F64)
@@ -274,7 +274,7 @@ impl Path<'_> {
         let rule = if plan.quantity().is_value() { "pointwise".into() } else { plan.rule().to_string() };
         match (self, evaluator) {
             (Self::Cpu(_), Evaluator::Device(_)) => {
-                let why = if plan.quantity().is_integral() && has_listed_directions(plan) {
+                let why = if has_listed_directions(plan) {
                     "the host finds the directions"
                 } else {
                     "f32 cannot meet the tolerance"

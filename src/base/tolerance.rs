@@ -14,6 +14,7 @@
 //! | a texel that the certificate keeps | T/2 (`KEPT_SHARE`) | both rules may err towards each other |
 //! | energy above the declared bound | 2 T (`ENERGY_SLACK`) | two channels add up, each within T |
 //! | a layout's bilinear error | 0.98 T (`LAYOUT_MARGIN`) | the search tests points; the worst lies between them |
+//! | look-ups of listed directions | T/10 (`LISTED_SHARE`) for the integrals that stand in for the exact values, where no bilinear error is promised | an integral over listed directions takes as long as a hundred others |
 //! | the search's reference table | T/100 (`LAYOUT_REFERENCE_SHARE`) | it stands in for the exact values |
 //!
 //! What follows from a table's tolerance (the rule's share, the precision, the storage) is decided once, when
@@ -80,6 +81,11 @@ pub(crate) const ENERGY_SLACK: f64 = 2.0;
 /// The share of the tolerance that the layout search may use up at its test points.
 #[cfg(feature = "check")]
 pub(crate) const LAYOUT_MARGIN: f64 = 0.98;
+
+/// The share of the tolerance to which integrals over listed directions are computed between the samples of a table that
+/// promises nothing there.
+#[cfg(feature = "check")]
+pub(crate) const LISTED_SHARE: f64 = 0.1;
 
 /// The share of the tolerance to which the layout search computes its reference table.
 #[cfg(feature = "check")]

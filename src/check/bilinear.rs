@@ -11,7 +11,7 @@
 
 use crate::backend::cpu;
 use crate::base::error::Result;
-use crate::base::tolerance::Tolerance;
+use crate::base::tolerance::{LISTED_SHARE, Tolerance};
 use crate::check;
 use crate::check::Check;
 use crate::check::cross_check::is_anisotropic_mean;
@@ -41,10 +41,10 @@ const ROUGHNESS: f64 = 0.05;
 /// The tolerance of the fast f64 path, far below any that a bilinear look-up meets.
 const FINE: Tolerance = Tolerance::known(1e-6);
 
-/// The tolerance of the fast path where nothing is promised of look-ups and an integral takes long: a tenth of the table's.
+/// The tolerance of the fast path: coarser where nothing is promised of look-ups and an integral takes long.
 fn fast_tolerance(plan: &TablePlan) -> Tolerance {
     match has_listed_directions(plan) && plan.bilinear().is_none() {
-        true => Tolerance::known((0.1 * plan.tolerance()).max(FINE.get())),
+        true => Tolerance::known((LISTED_SHARE * plan.tolerance()).max(FINE.get())),
         false => FINE,
     }
 }
@@ -273,9 +273,9 @@ fn test_grid(plan: &TablePlan) -> Vec<Vec<f64>> {
     grid(cells)
 }
 
-/// The test coordinates of an axis of about so many `cells`: its samples, the middles between them in u, both ends of the range, and the ends of
-/// the promise. At nodes of one axis the errors of the other stand alone, between them they add. A long axis keeps all of
-/// its first cells, where tables are worst, and some of the others.
+/// The test coordinates of an axis: its samples, the middles between them in u, both ends of the range, and the ends of the
+/// promise. At nodes of one axis the errors of the other stand alone, between them they add. An axis with more than `cells`
+/// keeps all of its first ones, where tables are worst, and some of the others.
 fn test_points(axis: &Axis, cells: usize) -> Vec<f64> {
     let first_cells = 3 * cells / 8;
     let (n, [a, b]) = (axis.len(), axis.range());

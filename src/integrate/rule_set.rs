@@ -174,7 +174,7 @@ pub(crate) fn has_listed_directions(plan: &TablePlan) -> bool {
         !lobe.factors().is_empty()
             || plan.rule() == Rule::Warped && matches!(lobe.model().integral, Integral::Mapped(_))
     };
-    plan.lobes().iter().any(is_listed)
+    plan.quantity().is_integral() && plan.lobes().iter().any(is_listed)
 }
 
 impl InnerRule {

@@ -1,7 +1,7 @@
 //! The library's types cannot be wrong: what a recipe would refuse, the API refuses when the value is made, with a remedy.
 
 use crate::common::model;
-use gonio::backend::gpu::{Device, adapters};
+use gonio::backend::gpu::Device;
 use gonio::bake::points::Points;
 use gonio::bake::{Evaluator, Unobserved};
 use gonio::base::angles::Angles;
@@ -140,7 +140,7 @@ fn a_model_is_built_and_not_written() {
 /// An engine's own device bakes, evaluates points and keeps its handlers: what gonio causes comes back as an error.
 #[test]
 fn an_engines_device_does_what_ours_does() {
-    let Some((device, queue)) = engine() else {
+    let Some((device, queue)) = crate::common::engine(gonio::wgpu::Limits::default()) else {
         panic!("no device to test on. {}", gonio::backend::gpu::INSTALL)
     };
     let foreign = Evaluator::Device(Box::new(Device::from_wgpu(&device, &queue)));
@@ -191,14 +191,3 @@ fn a_light_that_is_none_cannot_be_built() {
     assert_eq!(Disk::new(UP, 0.1, WHITE).unwrap().radius(), 0.1);
     assert_eq!(Sky::new(WHITE, [0.5; 3], [0.0; 3]).unwrap().horizon(), [0.5; 3]);
 }
-
-/// A device as an engine opens it: with no feature and no handler of gonio's.
-fn engine() -> Option<(wgpu::Device, wgpu::Queue)> {
-    let wanted = adapters().into_iter().next()?;
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    let all = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
-    let adapter = all.into_iter().find(|adapter| adapter.get_info() == wanted.info)?;
-    pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default())).ok()
-}
-
-use gonio::wgpu;

@@ -3,7 +3,6 @@
 
 use crate::common::*;
 use gonio::backend::gpu::{Baker, INSTALL, Recorded, TextureFormat};
-use gonio::bake::Evaluator;
 use gonio::check::Check;
 use gonio::model::lobe::Lobe;
 use gonio::plan::TablePlan;
@@ -190,11 +189,9 @@ struct Engine {
 
 impl Engine {
     fn open() -> Self {
-        let Evaluator::Device(headless) = device() else { panic!("no device to test on. {INSTALL}") };
-        let instance = wgpu::Instance::default();
-        let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
-        let adapter = adapters.into_iter().find(|adapter| adapter.get_info() == *headless.info()).unwrap();
-        let (device, queue) = pollster::block_on(adapter.request_device(&Default::default())).unwrap();
+        let Some((device, queue)) = engine(wgpu::Limits::default()) else {
+            panic!("no device to test on. {INSTALL}")
+        };
         Self { baker: Baker::new(&device, &queue), device, queue }
     }
 

@@ -1,8 +1,8 @@
 //! Devices with fewer limits than ours, as engines open them: a table, points or light are right, or refused by an error.
 //! Nothing panics, and the engine's own error handler hears nothing.
 
-use crate::common::model;
-use gonio::backend::gpu::{Baker, Device, INSTALL, TextureFormat, adapters};
+use crate::common::{engine, model};
+use gonio::backend::gpu::{Baker, Device, INSTALL, TextureFormat};
 use gonio::bake::{Evaluator, Unobserved};
 use gonio::base::timings::Timings;
 use gonio::check::Check;
@@ -29,7 +29,7 @@ fn a_restricted_device_is_right_or_refuses() {
         ("256 workgroups", wgpu::Limits { max_compute_workgroups_per_dimension: 256, ..plain.clone() }),
     ];
     for (name, limits) in cases {
-        let Some((device, queue)) = open(limits) else { continue };
+        let Some((device, queue)) = engine(limits) else { continue };
         let heard = hear(&device);
         let evaluator = Evaluator::Device(Box::new(Device::from_wgpu(&device, &queue)));
         for plan in plans() {
@@ -54,7 +54,7 @@ fn a_restricted_device_is_right_or_refuses() {
 /// 2049² texels are more workgroups of 64 than a dimension of a dispatch takes.
 #[test]
 fn a_texture_of_four_million_texels_is_whole() {
-    let Some((device, queue)) = open(wgpu::Limits::default()) else { panic!("no device. {INSTALL}") };
+    let Some((device, queue)) = engine(wgpu::Limits::default()) else { panic!("no device. {INSTALL}") };
     let heard = hear(&device);
     let axes = [Variable::Roughness, Variable::Mu].map(|variable| Axis::natural(variable, 2049).unwrap());
     let plan = TablePlan::basis("big", &SPLIT_SUM, model("ggx"), None, axes.into()).unwrap();
@@ -91,7 +91,7 @@ fn a_texture_of_four_million_texels_is_whole() {
 /// A device that is lost while tables are recorded is an error, or a recording that is never read.
 #[test]
 fn a_lost_device_is_no_panic() {
-    let Some((device, queue)) = open(wgpu::Limits::default()) else { panic!("no device. {INSTALL}") };
+    let Some((device, queue)) = engine(wgpu::Limits::default()) else { panic!("no device. {INSTALL}") };
     let evaluator = Evaluator::Device(Box::new(Device::from_wgpu(&device, &queue)));
     device.destroy();
     for plan in plans() {
@@ -140,14 +140,4 @@ fn hear(device: &wgpu::Device) -> Arc<AtomicUsize> {
         count.fetch_add(1, Ordering::Relaxed);
     }));
     heard
-}
-
-/// An engine's device with these limits; `None` where the adapter has less.
-fn open(limits: wgpu::Limits) -> Option<(wgpu::Device, wgpu::Queue)> {
-    let wanted = adapters().into_iter().next()?;
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    let all = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
-    let adapter = all.into_iter().find(|adapter| adapter.get_info() == wanted.info)?;
-    let descriptor = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
-    pollster::block_on(adapter.request_device(&descriptor)).ok()
 }

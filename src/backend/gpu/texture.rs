@@ -1,6 +1,6 @@
 //! Bakes a table into a texture, without leaving the device.
 
-use crate::backend::gpu::baker::{Baker, DispatchStep, Recorded};
+use crate::backend::gpu::baker::{Baker, DispatchStep, Recorded, count};
 use crate::base::error::{Error, Result};
 use crate::base::precision::Precision;
 use crate::plan::TablePlan;
@@ -117,7 +117,7 @@ impl Baker {
         let bind_group = self.bind(&pipeline, buffers.map(wgpu::Buffer::as_entire_binding));
         // More workgroups than a dimension takes stand in rows.
         let all = (width * height).div_ceil(64);
-        let across = all.min(self.device.limits().max_compute_workgroups_per_dimension).max(1);
+        let across = all.min(count(self.max_workgroups())?);
         let step =
             DispatchStep { pipeline, bind_group, workgroups: [across, all.div_ceil(across)], evaluations: 0 };
         let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };

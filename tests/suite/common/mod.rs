@@ -194,3 +194,13 @@ pub fn assert_term_meets_every_tolerance(models: [&'static Model; 2], with: impl
         }
     }
 }
+
+/// An engine's device with these limits; `None` where the adapter has less.
+pub fn engine(limits: gonio::wgpu::Limits) -> Option<(gonio::wgpu::Device, gonio::wgpu::Queue)> {
+    let wanted = gonio::backend::gpu::adapters().into_iter().next()?;
+    let instance = gonio::wgpu::Instance::new(gonio::wgpu::InstanceDescriptor::new_without_display_handle());
+    let all = pollster::block_on(instance.enumerate_adapters(gonio::wgpu::Backends::PRIMARY));
+    let adapter = all.into_iter().find(|adapter| adapter.get_info() == wanted.info)?;
+    let descriptor = gonio::wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
+    pollster::block_on(adapter.request_device(&descriptor)).ok()
+}
