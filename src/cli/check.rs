@@ -1,9 +1,10 @@
 //! `gonio check`
 
 mod pictures;
+mod shader;
 mod targets;
 
-use crate::backend::gpu::{Device, DeviceChoice, INSTALL};
+use crate::backend::gpu::DeviceChoice;
 use crate::bake::Evaluator;
 use crate::base::error::{Error, Result};
 use crate::base::timings::Stopwatch;
@@ -13,18 +14,17 @@ use crate::cli::{HEADING, device_json, junit, open, print_beside, print_json, wa
 use crate::io::Outputs;
 use crate::scene;
 use crate::verify;
-use crate::verify::user_shader::{UserFunction, UserShader, directions};
-use crate::verify::{Finding, Input, ParameterRange, Report, STEPS, Symmetry, Verdict, VerifyOptions};
+use crate::verify::{Finding, Report, STEPS, Verdict, VerifyOptions};
 use serde_json::json;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use targets::CheckTarget;
 pub(super) use targets::quoted;
 
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub struct Args {
-    /// A scene or recipe, of which every material and basis is checked
-    #[arg(value_name = "SCENE", conflicts_with_all = ["model", "wgsl", "set"])]
+    /// A scene or recipe, of which every material and basis is checked; or your own shader, as FILE#FUNCTION
+    #[arg(value_name = "SCENE|SHADER", conflicts_with_all = ["model", "wgsl"])]
     scene: Option<PathBuf>,
     /// Check only this material of the scene
     #[arg(long, value_name = "NAME", requires = "scene")]
@@ -32,22 +32,37 @@ pub struct Args {
     /// A model, by its name in `gonio models`
     #[arg(long, value_name = "NAME", conflicts_with = "wgsl")]
     model: Option<String>,
-    /// Your own WGSL file with a BRDF
-    #[arg(long, value_name = "FILE", requires = "entry")]
+    /// Your own file with a BRDF, in WGSL or GLSL; the same as SHADER
+    #[arg(long, value_name = "FILE")]
     wgsl: Option<PathBuf>,
-    /// The function in that file: (wi: vec3f, wo: vec3f, further f32 parameters) -> f32 or vec3f, in sr⁻¹. Both directions
-    /// are unit vectors that point away from the surface, whose normal is +z
-    #[arg(long, value_name = "NAME", requires = "wgsl")]
+    /// The function in that file, where several can be a BRDF. It takes the directions of light and view, which point away
+    /// from the surface, and returns f in sr⁻¹
+    #[arg(long, value_name = "NAME")]
     entry: Option<String>,
-    /// Set a parameter to a value, or to a range to check. A WGSL function needs every parameter; a model's
-    /// unset parameters are checked over their whole range
+    /// Set a parameter to a value, or to a range to check; several components by commas. A shader needs every
+    /// parameter; a model's unset parameters are checked over their whole range
     #[arg(long, value_name = "NAME=VALUE|LOW..HIGH")]
     set: Vec<String>,
+    /// Say what an argument of the shader is, where its name does not tell: L, V, N, H, T, B or R, -L, NdotL, or `parameter`
+    #[arg(long, value_name = "NAME=ROLE")]
+    role: Vec<String>,
+    /// The member of the shader's result that is the BRDF
+    #[arg(long, value_name = "NAME")]
+    result: Option<String>,
+    /// The axis of the shader's frame that is the normal
+    #[arg(long, value_name = "x|y|z", default_value = "z", hide_default_value = true)]
+    up: String,
+    /// A folder of files that the shader includes or imports
+    #[arg(long, value_name = "DIR")]
+    include: Vec<PathBuf>,
+    /// Define a macro of the shader's preprocessor
+    #[arg(long, value_name = "NAME[=VALUE]")]
+    define: Vec<String>,
     /// The function returns f cos θi: gonio divides by cos θi, at least 2⁻²⁴
-    #[arg(long, requires = "wgsl")]
+    #[arg(long)]
     cosine: bool,
     /// Do not expect isotropy or bilateral symmetry
-    #[arg(long, requires = "wgsl")]
+    #[arg(long)]
     anisotropic: bool,
     /// Number of inputs to evaluate for each subject before the search, e.g. 1e8. Results do not depend on the
     /// speed of the machine
@@ -72,13 +87,13 @@ Examples:
   gonio check scene.gltf
   gonio check recipe.toml --material gold --out pictures
   gonio check --model ggx --set alpha=1e-6..1 --set f0=0.04 --budget 1e8
-  gonio check --wgsl brdf.wgsl --entry brdf
-  gonio check --wgsl brdf.wgsl --entry brdf --set roughness=0.05..1 --set metallic=0 --junit check.xml
-  gonio check --wgsl brdf.wgsl --entry shade --cosine --anisotropic --json
+  gonio check brdf.wgsl
+  gonio check brdf.wgsl#GGX_specular --set roughness=0.05..1 --set base_color=0..1 --junit check.xml
+  gonio check light.frag#shade --cosine --anisotropic --include chunks --define CLEARCOAT --json
 
 Promises: finite, non-negative, reciprocity, isotropy, bilateral symmetry, agreement
 with the f64 reference (scenes and models), and energy (ρ_dh ≤ 1). The worst input of each is printed with all
-digits, as a command to paste; for your own WGSL file: its options and the two vectors.
+digits, as a command to paste; for your own shader: its options and the two vectors.
 If a format is known to break a promise, gonio reports it and checks the known bound.
 
 Exit codes: 0 all promises hold (or break within their known bound), 1 a promise is broken, 2 bad input,
@@ -91,11 +106,16 @@ fn budget(text: &str) -> Result<u64, String> {
 }
 
 pub fn run(args: &Args) -> Result<()> {
-    // clap forgives a missing requirement that conflicts with what is there.
-    if args.wgsl.is_none() && (args.entry.is_some() || args.cosine || args.anisotropic) {
-        return Err(Error::input("--entry, --cosine and --anisotropic are for --wgsl FILE"));
+    if let Some((path, entry)) = shader::named(args)? {
+        return shader::check_shader(args, &path, entry);
     }
-    match (&args.scene, &args.model, &args.wgsl, &args.entry) {
+    if let Some(option) = args.shader_option() {
+        return Err(Error::input(format!("{option} is for a shader; give FILE#FUNCTION")));
+    }
+    if args.scene.is_some() && !args.set.is_empty() {
+        return Err(Error::input("--set is for a shader or a --model; a scene sets its own parameters"));
+    }
+    match (&args.scene, &args.model) {
         (Some(path), ..) => {
             let scene = scene::read(path)?;
             let (evaluator, line) = open(&args.device)?;
@@ -103,12 +123,11 @@ pub fn run(args: &Args) -> Result<()> {
             let targets = targets::scene(path, &scene, args.material.as_deref(), evaluator)?;
             check_targets(args, targets, evaluator, &line)
         }
-        (_, Some(model), ..) => {
+        (_, Some(model)) => {
             let (evaluator, line) = open(&args.device)?;
             check_targets(args, vec![targets::model(args, model, evaluator)?], evaluator, &line)
         }
-        (_, _, Some(path), Some(entry)) => check_shader(args, path, entry),
-        _ => Err(Error::input("give a SCENE, --model NAME, or --wgsl FILE and --entry NAME")),
+        _ => Err(Error::input("give a SCENE, a SHADER such as brdf.wgsl#brdf, or --model NAME")),
     }
 }
 
@@ -169,75 +188,6 @@ fn check_targets(args: &Args, targets: Vec<CheckTarget>, evaluator: &Evaluator, 
     verdict(&all)
 }
 
-/// Checks a function in a user's WGSL file.
-fn check_shader(args: &Args, path: &Path, entry: &str) -> Result<()> {
-    let file = path.display().to_string();
-    let source = std::fs::read(path).map_err(Error::io("read", path))?;
-    let source = String::from_utf8(source).map_err(|e| {
-        Error::input(format!("{file} is not text in UTF-8, from byte {}", e.utf8_error().valid_up_to()))
-    })?;
-    let function = UserFunction::parse(&file, source, entry)?;
-    let parameters = parameters(&function, &args.set)?;
-
-    let (device, line) = Device::choose(&args.device)?;
-    let device = device.ok_or_else(|| {
-        Error::Device(format!(
-            "WGSL needs a Vulkan device, and there is no CPU path for it ({line}). {INSTALL}"
-        ))
-    })?;
-    // It lives as long as the process, see `open`.
-    let device: &'static Device = Box::leak(Box::new(device));
-    let symmetry = Symmetry { isotropic: !args.anisotropic, bilateral: !args.anisotropic };
-    let mut subject = UserShader::new(device, function, parameters, args.cosine, symmetry)?;
-
-    let start = Stopwatch::start();
-    let watch = Watch::new(STEPS);
-    let report = verify::check(&mut subject, &args.options(), &watch);
-    watch.finish();
-    let report = report?;
-    let seconds = start.seconds();
-    let vectors = |input: &Input| directions(&input.angles, args.cosine);
-    let words = |input: &Input| {
-        let [wi, wo] = vectors(input).map(|[x, y, z]| format!("({x:?}, {y:?}, {z:?})"));
-        format!("{input}\n{:15}wi = {wi}, wo = {wo}", "")
-    };
-    let inputs = report.findings.iter().map(|finding| finding.input.as_ref().map(words)).collect();
-
-    print_beside(args.json, &format!("{HEADING}device{HEADING:#}  {line}"))?;
-    show_report(args, &report, seconds, &inputs)?;
-    let inputs = report.findings.iter().map(|f| f.input.as_ref().map(Input::to_string)).collect();
-    let checked = [Checked { report, seconds, inputs }];
-    if let Some(path) = &args.junit {
-        let mut outputs = Outputs::default();
-        junit::write(path, &checked, &mut outputs)?;
-        outputs.commit()?;
-    }
-    let report = &checked[0].report;
-    if args.json {
-        let findings: Vec<_> = report
-            .findings
-            .iter()
-            .map(|finding| {
-                let mut value = json!(finding);
-                if let Some(input) = &finding.input {
-                    let [wi, wo] = vectors(input);
-                    value["input"]["eval"] = json!(input.to_string());
-                    value["input"]["wi"] = json!(wi);
-                    value["input"]["wo"] = json!(wo);
-                }
-                value
-            })
-            .collect();
-        print_json(&json!({
-            "subject": report.subject,
-            "device": { "kind": device.kind(), "name": device.name(), "driver": device.driver() },
-            "evaluated": report.evaluated, "seconds": seconds, "kept": report.is_kept(), "notes": report.notes,
-            "findings": findings,
-        }))?;
-    }
-    verdict(&checked)
-}
-
 /// A subject's report, its duration, and the worst input of each finding as options to paste.
 pub(super) struct Checked {
     pub report: Report,
@@ -248,6 +198,21 @@ pub(super) struct Checked {
 impl Args {
     fn options(&self) -> VerifyOptions {
         VerifyOptions { budget: self.budget, ..VerifyOptions::default() }
+    }
+
+    /// An option that only a shader has, if one is given.
+    fn shader_option(&self) -> Option<&'static str> {
+        let given = [
+            (self.entry.is_some(), "--entry"),
+            (self.cosine, "--cosine"),
+            (self.anisotropic, "--anisotropic"),
+            (!self.role.is_empty(), "--role"),
+            (self.result.is_some(), "--result"),
+            (self.up != "z", "--up"),
+            (!self.include.is_empty(), "--include"),
+            (!self.define.is_empty(), "--define"),
+        ];
+        given.into_iter().find(|(is_given, _)| *is_given).map(|(_, option)| option)
     }
 }
 
@@ -269,41 +234,6 @@ fn show_report(args: &Args, report: &Report, seconds: f64, inputs: &Vec<Option<S
         }
     }
     Ok(())
-}
-
-/// Parses `--set` into one value or range for each parameter of the function.
-fn parameters(function: &UserFunction, sets: &[String]) -> Result<Vec<ParameterRange>> {
-    let mut given = Vec::new();
-    for set in sets {
-        let fault = || {
-            Error::input(format!("--set {set}: give NAME=VALUE or NAME=LOW..HIGH, as in --set alpha=0.1..1"))
-        };
-        let (name, range) = set.split_once('=').ok_or_else(fault)?;
-        let (low, high) = range.split_once("..").unwrap_or((range, range));
-        let number = |text: &str| text.trim().parse::<f64>().map_err(|_| fault());
-        let parameter = ParameterRange::new(name.trim(), number(low)?, number(high)?)
-            .map_err(|e| e.at(format!("--set {set}")))?;
-        if !function.parameters().contains(&parameter.name) {
-            let names = function.parameters().join(", ");
-            let there = if names.is_empty() { "it has none".into() } else { format!("there are {names}") };
-            return Err(Error::input(format!(
-                "--set {set}: the function has no parameter \"{}\"; {there}",
-                parameter.name
-            )));
-        }
-        if given.iter().any(|other: &ParameterRange| other.name == parameter.name) {
-            return Err(Error::input(format!("--set {set}: \"{}\" is given twice", parameter.name)));
-        }
-        given.push(parameter);
-    }
-    let find = |name: &String| {
-        given.iter().find(|parameter| parameter.name == *name).cloned().ok_or_else(|| {
-            Error::input(format!(
-                "parameter \"{name}\" has no value; give --set {name}=VALUE or --set {name}=LOW..HIGH"
-            ))
-        })
-    };
-    function.parameters().iter().map(find).collect()
 }
 
 /// Formats one finding as a line.

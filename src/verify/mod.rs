@@ -55,6 +55,8 @@ pub struct ParameterRange {
     pub high: f64,
     /// Whether its values are spread by their logarithms; `low` is positive then.
     pub logarithmic: bool,
+    /// Whether it has whole numbers only.
+    pub integer: bool,
 }
 
 impl ParameterRange {
@@ -69,7 +71,18 @@ impl ParameterRange {
                 "parameter {name}: {low}..{high} is no range of finite numbers, the lower first"
             )));
         }
-        Ok(Self { name, low, high, logarithmic: low > 0.0 && high >= 100.0 * low })
+        Ok(Self { name, low, high, logarithmic: low > 0.0 && high >= 100.0 * low, integer: false })
+    }
+
+    /// The same range of whole numbers.
+    ///
+    /// # Errors
+    /// When an end is no whole number.
+    pub fn whole(self) -> Result<Self> {
+        match [self.low, self.high].into_iter().find(|end| end.fract() != 0.0) {
+            Some(end) => Err(Error::input(format!("parameter {}: {end} is no whole number", self.name))),
+            None => Ok(Self { integer: true, ..self }),
+        }
     }
 
     /// The value at u in [0, 1].
@@ -78,6 +91,7 @@ impl ParameterRange {
             true => self.low * (self.high / self.low).powf(u),
             false => self.low + u * (self.high - self.low),
         };
+        let value = if self.integer { value.round() } else { value };
         value.clamp(self.low, self.high)
     }
 

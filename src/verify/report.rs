@@ -152,7 +152,9 @@ impl Report {
 impl fmt::Display for Input {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (name, value) in &self.setting {
-            write!(f, "--set {name}={value:?} ")?;
+            // A shell takes brackets for a pattern.
+            let quote = if name.contains('[') { "'" } else { "" };
+            write!(f, "--set {quote}{name}={value:?}{quote} ")?;
         }
         // The shortest digits that read back as the same f64, 17 at most.
         let Angles { theta_i, phi_i, theta_e, phi_e } = self.angles;

@@ -112,9 +112,11 @@ impl Adapter {
             wgpu::DeviceType::Cpu => wgpu::Features::SHADER_INT64,
             _ => wgpu::Features::empty(),
         };
+        // A user's shader may compute in f16.
+        let wanted = wgpu::Features::SHADER_F64 | wgpu::Features::SHADER_F16 | wide;
         let request = self.adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("gonio"),
-            required_features: self.adapter.features() & (wgpu::Features::SHADER_F64 | wide),
+            required_features: self.adapter.features() & wanted,
             required_limits: limits,
             ..Default::default()
         });

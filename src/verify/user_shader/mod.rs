@@ -1,0 +1,396 @@
+//! A user's own BRDF: a function of a shader, run as it is, in the device's arithmetic.
+//!
+//! A file goes this way:
+//!
+//! 1. `source` reads it and tells WGSL from GLSL;
+//! 2. `preprocess` carries out its directives, `imports` joins it with the modules that it names;
+//! 3. `items` leaves what the function reaches, `bindings` turns what its program would fill into variables;
+//! 4. naga parses it, `glsl` translates GLSL into WGSL;
+//! 5. `signature` finds out what is a direction and what a parameter, by `roles`;
+//! 6. `compose` appends a compute shader that calls the function, and `run` runs it.
+//!
+//! Lines stay where they are all the way, so that errors point at the user's own.
+
+mod bindings;
+mod compose;
+mod glsl;
+mod imports;
+mod items;
+mod preprocess;
+mod roles;
+mod run;
+mod signature;
+mod source;
+mod text;
+mod token;
+
+pub use compose::UpAxis;
+pub use run::{UserShader, directions};
+pub use signature::ShaderParameter;
+pub use source::is_shader;
+
+use crate::base::error::{Error, Result};
+use crate::verify::ParameterRange;
+use imports::Joined;
+use items::{Item, ItemKind};
+use naga::valid::{Capabilities, ShaderStages, ValidationFlags, Validator};
+use naga::{Block, Handle, Module, Statement, TypeInner};
+use signature::{Signature, Understood, Wishes, show};
+use source::ShaderLanguage;
+use std::path::{Path, PathBuf};
+
+/// How a shader is to be read, where its text does not tell.
+#[derive(Debug, Clone, Default)]
+#[non_exhaustive]
+pub struct ShaderOptions {
+    /// The function; none where only one of the file can be a BRDF.
+    pub entry: Option<String>,
+    /// Roles of arguments by name, such as `("x", "NdotL")`; `parameter` for what is none.
+    pub roles: Vec<(String, String)>,
+    /// The member of the result that is the BRDF, such as `specular`.
+    pub result: Option<String>,
+    /// The axis that is the normal.
+    pub up: UpAxis,
+    /// Folders of included files and imported modules.
+    pub includes: Vec<PathBuf>,
+    /// Macros, and what they stand for.
+    pub defines: Vec<(String, String)>,
+}
+
+/// A function of a shader that can be a BRDF.
+#[derive(Debug, Clone)]
+pub struct UserFunction {
+    file: String,
+    entry: String,
+    signature: Signature,
+    /// What is compiled, in WGSL, and the function's name in it.
+    code: String,
+    call: String,
+    up: UpAxis,
+    /// Whether it, or what it calls, has a loop.
+    loops: bool,
+    /// Whether it computes in f16.
+    half: bool,
+}
+
+/// Functions that a message lists.
+const LISTED: usize = 12;
+
+impl UserFunction {
+    /// Finds `entry` in a WGSL source; `file` is its name in messages.
+    ///
+    /// # Errors
+    /// When what the function reaches is not valid WGSL, by its own lines; when there is no such function, or it
+    /// cannot be a BRDF; when it needs what only its program could give it, such as a texture.
+    pub fn parse(file: impl Into<String>, source: impl Into<String>, entry: &str) -> Result<Self> {
+        let options = ShaderOptions { entry: Some(entry.into()), ..ShaderOptions::default() };
+        Self::find(file.into(), source.into(), None, &options)
+    }
+
+    /// Finds a function in a file of WGSL or GLSL.
+    ///
+    /// # Errors
+    /// As [`Self::parse`], and when the file cannot be read, or several functions could be meant.
+    pub fn read(path: &Path, options: &ShaderOptions) -> Result<Self> {
+        let text = source::read(path)?;
+        Self::find(path.display().to_string(), text, Some(path), options)
+    }
+
+    fn find(file: String, text: String, path: Option<&Path>, options: &ShaderOptions) -> Result<Self> {
+        let text = source::clean(&file, text);
+        let language = source::language(&file, &text);
+        let joined = imports::join(&file, &text, path, language, &options.includes, &options.defines);
+        let joined = joined.map_err(|error| error.at(&file))?;
+        let text = joined.text.joined();
+        let items = items::items(&text, language);
+        let roles = options.roles.iter().map(|(name, role)| match role.as_str() {
+            "parameter" => Ok((name.clone(), None)),
+            role => Ok((name.clone(), Some(role.parse()?))),
+        });
+        let wishes = Wishes { roles: roles.collect::<Result<_>>()?, result: options.result.clone() };
+        let shader = Shader { file, joined, text, items, language, wishes, up: options.up };
+        match &options.entry {
+            Some(entry) => shader.function(entry),
+            None => shader.only_function(),
+        }
+    }
+
+    /// The name of the function.
+    pub fn entry(&self) -> &str {
+        &self.entry
+    }
+
+    /// `FILE#ENTRY`.
+    pub fn name(&self) -> String {
+        format!("{}#{}", self.file, self.entry)
+    }
+
+    /// The numbers that it takes beside the directions, in the order of a setting.
+    pub fn parameters(&self) -> &[ShaderParameter] {
+        &self.signature.parameters
+    }
+
+    /// What can be set, with its type: `base_color: vec3<f32>`.
+    pub fn settable(&self) -> Vec<String> {
+        let parameter = |(name, what): &(String, Understood)| match what {
+            Understood::Parameter(ty, _) => Some(format!("{name}: {ty}")),
+            Understood::Role(_) => None,
+        };
+        self.signature.understood.iter().filter_map(parameter).collect()
+    }
+
+    /// The axis that is its normal.
+    pub fn up(&self) -> UpAxis {
+        self.up
+    }
+
+    /// Says what was understood: `brdf(n = normal, l = wi, v = wo, roughness = 0.1..1) → vec3f`. `parameters` are its
+    /// own, in its order.
+    pub fn describe(&self, parameters: &[ParameterRange]) -> String {
+        let range = |parameter: &ParameterRange| match parameter.low == parameter.high {
+            true => format!("{}", parameter.low),
+            false => format!("{}..{}", parameter.low, parameter.high),
+        };
+        let say = |(name, what): &(String, Understood)| match what {
+            Understood::Role(role) => format!("{name} = {role}"),
+            Understood::Parameter(_, indices) => {
+                let mut ranges: Vec<_> =
+                    parameters.get(indices.clone()).unwrap_or_default().iter().map(range).collect();
+                // One for all, as it can be given.
+                ranges.dedup();
+                format!("{name} = {}", ranges.join(", "))
+            }
+        };
+        let arguments: Vec<_> = self.signature.understood.iter().map(say).collect();
+        let result = if self.signature.result.channels == 1 { "f32" } else { "vec3f" };
+        let up = match self.up {
+            UpAxis::X => ", the normal is +x",
+            UpAxis::Y => ", the normal is +y",
+            UpAxis::Z => "",
+        };
+        format!("{}({}) → {result}{up}", self.entry, arguments.join(", "))
+    }
+}
+
+/// A shader on its way.
+struct Shader {
+    file: String,
+    joined: Joined,
+    text: String,
+    items: Vec<Item>,
+    language: ShaderLanguage,
+    wishes: Wishes,
+    up: UpAxis,
+}
+
+impl Shader {
+    fn function(&self, entry: &str) -> Result<UserFunction> {
+        let declared =
+            |kind| move |item: &&Item| item.kind == kind && item.names.iter().any(|name| name == entry);
+        if self.items.iter().any(|item| declared(ItemKind::Function)(&item)) {
+            return self.candidate(entry);
+        }
+        // A fault of the syntax hides functions.
+        if self.language == ShaderLanguage::Wgsl {
+            naga::front::wgsl::parse_str(&self.text).map_err(|error| self.joined.text.parse_error(&error))?;
+        }
+        Err(Error::input(match self.items.iter().find(declared(ItemKind::EntryPoint)) {
+            Some(_) => format!(
+                "{}: {entry} is an entry point of a pipeline; name the function that it calls: {}",
+                self.file,
+                self.names().join(", ")
+            ),
+            None => match self.names()[..] {
+                [] => format!("{}: there is no function {entry}, nor any other", self.file),
+                ref names => {
+                    format!("{}: there is no function {entry}; there are {}", self.file, names.join(", "))
+                }
+            },
+        }))
+    }
+
+    /// The function that can be a BRDF, if there is one alone.
+    fn only_function(&self) -> Result<UserFunction> {
+        let names = self.names();
+        if names.is_empty() {
+            self.function("brdf")?;
+        }
+        let mut fitting = Vec::new();
+        let mut others = Vec::new();
+        for name in names {
+            match self.candidate(&name) {
+                Ok(function) => fitting.push(function),
+                Err(why) => others.push((name, why)),
+            }
+        }
+        // Names tell more than places.
+        if fitting.iter().any(|function| function.signature.by_name) {
+            fitting.retain(|function| function.signature.by_name);
+        }
+        let file = &self.file;
+        match fitting.len() {
+            1 => Ok(fitting.remove(0)),
+            0 if others.len() == 1 => Err(others.remove(0).1),
+            0 => {
+                let list: Vec<_> =
+                    others.iter().take(LISTED).map(|(name, why)| format!("{name}: {why}")).collect();
+                Err(Error::input(format!("{file}: no function can be a BRDF:\n{}", list.join("\n"))))
+            }
+            count => {
+                let list = fitting.iter().take(LISTED).map(|function| {
+                    let arguments = function.signature.understood.iter().map(|(name, what)| match what {
+                        Understood::Role(role) => format!("{name} = {role}"),
+                        Understood::Parameter(ty, _) => format!("{name}: {ty}"),
+                    });
+                    format!("  {file}#{}   ({})", function.entry, arguments.collect::<Vec<_>>().join(", "))
+                });
+                Err(Error::input(format!(
+                    "{file}: {count} functions can be a BRDF; name one of them:\n{}",
+                    list.collect::<Vec<_>>().join("\n")
+                )))
+            }
+        }
+    }
+
+    /// The functions of the user's own file.
+    fn names(&self) -> Vec<String> {
+        let own: usize = self.joined.text.lines.iter().map(|line| line.text.len() + 1).sum();
+        let functions = self.items.iter().filter(|item| item.kind == ItemKind::Function);
+        let mut names: Vec<String> = Vec::new();
+        for item in functions.filter(|item| item.range.start < own) {
+            let is_own = self.joined.text.file(item.range.start) == Some(0);
+            names.extend(
+                item.names.iter().filter(|name| is_own && !names.contains(name)).cloned().collect::<Vec<_>>(),
+            );
+        }
+        names
+    }
+
+    /// Reads a function of the file as a BRDF.
+    fn candidate(&self, entry: &str) -> Result<UserFunction> {
+        let at = |error: Error| error.at(&self.file);
+        let reached = items::reached(&self.items, entry);
+        let kept = || self.items.iter().zip(&reached).filter(|(_, kept)| **kept).map(|(item, _)| item);
+        let missing = kept().find_map(|item| {
+            let written = item.uses.iter().find_map(|word| self.joined.missing.get(word))?;
+            Some((written, self.joined.text.place(item.range.start)))
+        });
+        if let Some((written, place)) = missing {
+            let module = written.rsplit_once("::").map_or(written.as_str(), |(module, _)| module);
+            return Err(Error::input(format!(
+                "{place}: fn {entry} needs {written}, and no file here has `#define_import_path {module}`; give its folder as an \
+                 include folder"
+            )));
+        }
+        let (private, names) = bindings::made_private(&self.text, &self.items, &reached, self.language)
+            .map_err(|error| at(Error::input(format!("fn {entry} {error}"))))?;
+        // The declarations lie where they lay, but for those that became variables.
+        let items = items::items(&private, self.language);
+        let text =
+            self.joined.text.with_text(&items::pruned(&private, &items, &items::reached(&items, entry)));
+        match self.language {
+            ShaderLanguage::Wgsl => self.wgsl(entry, &text, &names),
+            ShaderLanguage::Glsl => self.glsl(entry, &text, &names),
+        }
+    }
+
+    fn wgsl(&self, entry: &str, text: &text::ShaderText, names: &[String]) -> Result<UserFunction> {
+        let code = text.joined();
+        let module = naga::front::wgsl::parse_str(&code).map_err(|error| text.parse_error(&error))?;
+        let found = module.functions.iter().find(|(_, function)| function.name.as_deref() == Some(entry));
+        let (handle, function) =
+            found.ok_or_else(|| Error::Internal(format!("fn {entry} is lost on the way")))?;
+        // What any device may lack is for the device to refuse.
+        let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module);
+        let info = info.map_err(|error| text.validation_error(&error))?;
+        let shown = show(&module, function);
+        let is_compute = info[handle].available_stages.contains(ShaderStages::COMPUTE);
+        let globals: Vec<_> = globals(&module, names).into_iter().map(|(name, _, ty)| (name, ty)).collect();
+        let signature = Signature::new(&module, function, &globals, &self.wishes);
+        self.finish(entry, &shown, signature, is_compute, &module, code, entry)
+    }
+
+    fn glsl(&self, entry: &str, text: &text::ShaderText, names: &[String]) -> Result<UserFunction> {
+        let module = glsl::parse(text)?;
+        // Of overloads the last that fits.
+        let mut best = None;
+        for (handle, function) in module.functions.iter().filter(|(_, f)| f.name.as_deref() == Some(entry)) {
+            let globals = globals(&module, names);
+            let types: Vec<_> = globals.iter().map(|(name, _, ty)| (name.clone(), *ty)).collect();
+            let signature = Signature::new(&module, function, &types, &self.wishes);
+            if best.is_none() || signature.is_ok() {
+                best = Some((handle, show(&module, function), globals, signature));
+            }
+        }
+        let (handle, shown, globals, signature) =
+            best.ok_or_else(|| Error::input(format!("fn {entry} has no body")).at(&self.file))?;
+        let variables: Vec<_> = globals.iter().map(|(_, variable, _)| *variable).collect();
+        let signature = signature.map(|mut signature| {
+            signature.globals.iter_mut().enumerate().for_each(|(k, (name, _))| *name = glsl::global(k));
+            signature
+        });
+        let code = glsl::translate(text, module.clone(), handle, &variables)?;
+        self.finish(entry, &shown, signature, true, &module, code, glsl::ENTRY)
+    }
+
+    #[allow(clippy::too_many_arguments)] // each is one result of the stages before
+    fn finish(
+        &self,
+        entry: &str,
+        shown: &str,
+        signature: Result<Signature>,
+        is_compute: bool,
+        module: &Module,
+        code: String,
+        call: &str,
+    ) -> Result<UserFunction> {
+        let unfit = |what: String| Error::input(format!("{}: fn {entry}{shown} {what}", self.file));
+        let signature = signature.map_err(|error| unfit(error.to_string()))?;
+        if !is_compute {
+            let what = "uses what only fragment shaders have, a derivative or an implicit level of detail";
+            return Err(unfit(what.into()));
+        }
+        Ok(UserFunction {
+            file: self.file.clone(),
+            entry: entry.into(),
+            signature,
+            loops: module.functions.iter().any(|(_, function)| has_loop(&function.body)),
+            half: module.types.iter().any(|(_, ty)| is_half(&ty.inner)),
+            code,
+            call: call.into(),
+            up: self.up,
+        })
+    }
+}
+
+/// The variables of a module with these names.
+fn globals(
+    module: &Module,
+    names: &[String],
+) -> Vec<(String, Handle<naga::GlobalVariable>, Handle<naga::Type>)> {
+    let find = |name: &String| {
+        let found = module.global_variables.iter().find(|(_, v)| v.name.as_ref() == Some(name));
+        found.map(|(handle, variable)| (name.clone(), handle, variable.ty))
+    };
+    names.iter().filter_map(find).collect()
+}
+
+fn is_half(inner: &TypeInner) -> bool {
+    match inner {
+        TypeInner::Scalar(scalar) | TypeInner::Vector { scalar, .. } | TypeInner::Matrix { scalar, .. } => {
+            *scalar == naga::Scalar::F16
+        }
+        _ => false,
+    }
+}
+
+/// Whether a block has a loop in it.
+fn has_loop(block: &Block) -> bool {
+    block.iter().any(|statement| match statement {
+        Statement::Loop { .. } => true,
+        Statement::Block(block) => has_loop(block),
+        Statement::If { accept, reject, .. } => has_loop(accept) || has_loop(reject),
+        Statement::Switch { cases, .. } => cases.iter().any(|case| has_loop(&case.body)),
+        _ => false,
+    })
+}
