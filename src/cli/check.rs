@@ -1,6 +1,7 @@
 //! `gonio check`
 
 mod pictures;
+mod resources;
 mod shader;
 mod targets;
 
@@ -58,6 +59,10 @@ pub struct Args {
     /// Define a macro of the shader's preprocessor
     #[arg(long, value_name = "NAME[=VALUE]")]
     define: Vec<String>,
+    /// Bind a texture that the shader reads to a picture (EXR, NPY, PNG, JPEG), or a sampler to `linear` or `nearest`,
+    /// with `-clamp` or `-repeat`
+    #[arg(long, value_name = "NAME=FILE|SAMPLER")]
+    bind: Vec<String>,
     /// The function returns f cos θi: gonio divides by cos θi, at least 2⁻²⁴
     #[arg(long)]
     cosine: bool,
@@ -211,6 +216,7 @@ impl Args {
             (self.up != "z", "--up"),
             (!self.include.is_empty(), "--include"),
             (!self.define.is_empty(), "--define"),
+            (!self.bind.is_empty(), "--bind"),
         ];
         given.into_iter().find(|(is_given, _)| *is_given).map(|(_, option)| option)
     }

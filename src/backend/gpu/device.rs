@@ -112,8 +112,9 @@ impl Adapter {
             wgpu::DeviceType::Cpu => wgpu::Features::SHADER_INT64,
             _ => wgpu::Features::empty(),
         };
-        // A user's shader may compute in f16.
-        let wanted = wgpu::Features::SHADER_F64 | wgpu::Features::SHADER_F16 | wide;
+        // A user's shader may compute in f16, and read textures.
+        let user = wgpu::Features::SHADER_F16 | wgpu::Features::FLOAT32_FILTERABLE;
+        let wanted = wgpu::Features::SHADER_F64 | user | wide;
         let request = self.adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("gonio"),
             required_features: self.adapter.features() & wanted,

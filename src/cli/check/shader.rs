@@ -1,6 +1,6 @@
 //! Checks a function of the user's own shader.
 
-use super::{Args, Checked, show_report, verdict};
+use super::{Args, Checked, resources, show_report, verdict};
 use crate::backend::gpu::{Device, INSTALL};
 use crate::base::error::{Error, Result};
 use crate::base::timings::Stopwatch;
@@ -33,7 +33,8 @@ pub fn named(args: &Args) -> Result<Option<(PathBuf, Option<String>)>> {
 }
 
 pub fn check_shader(args: &Args, path: &Path, entry: Option<String>) -> Result<()> {
-    let function = UserFunction::read(path, &options(args, entry)?)?;
+    let mut function = UserFunction::read(path, &options(args, entry)?)?;
+    resources::bind(&mut function, &args.bind)?;
     let parameters = ranges(&function, &args.set)?;
     let understood = function.describe(&parameters);
     let unit = if args.cosine { "f cos θi in sr⁻¹" } else { "f in sr⁻¹" };
@@ -163,7 +164,12 @@ fn ranges(function: &UserFunction, sets: &[String]) -> Result<Vec<ParameterRange
         }
     }
     if let Some(k) = given.iter().position(Option::is_none) {
-        let name = &parameters[k].name;
+        let whole = function.settable();
+        let names = whole.iter().filter_map(|text| text.split_once(": ")).map(|(name, _)| name);
+        let name = names
+            .into_iter()
+            .find(|name| is_within(&parameters[k].name, name))
+            .unwrap_or(&parameters[k].name);
         return Err(Error::input(format!(
             "parameter \"{name}\" has no value; give --set {name}=VALUE or --set {name}=LOW..HIGH; {}",
             settable(function)

@@ -1,51 +1,76 @@
 //! What a shader's program would fill: uniforms, inputs of a stage, constants without a value.
 //!
 //! Each becomes a private variable of the same name, which is set before the function is called. So it is a parameter as
-//! an argument is, and needs no layout.
+//! an argument is, and needs no layout. Textures and samplers stay bindings, of a group of their own.
 
 use super::items::{Item, ItemKind, closing};
+use super::resources::{RESOURCES, Slot};
 use super::source::ShaderLanguage;
 use super::token::{Token, words};
 use crate::base::error::{Error, Result};
 
-/// Turns what is bound, among what is reached, into private variables, and returns their names.
+/// What a text became, and what has to be set and bound for it.
+pub(super) struct Private {
+    pub text: String,
+    /// Names of variables.
+    pub names: Vec<String>,
+    pub slots: Vec<Slot>,
+}
+
+/// Turns what is bound, among what is reached, into private variables.
 ///
 /// # Errors
-/// When a texture, a sampler or an array without a length is among it.
+/// When a texture is among it that cannot be bound.
 pub(super) fn made_private(
     text: &str,
     items: &[Item],
     reached: &[bool],
     language: ShaderLanguage,
-) -> Result<(String, Vec<String>)> {
-    let mut out = String::with_capacity(text.len());
-    let mut names = Vec::new();
+) -> Result<Private> {
+    let mut private =
+        Private { text: String::with_capacity(text.len()), names: Vec::new(), slots: Vec::new() };
     let mut at = 0;
     for (item, _) in items.iter().zip(reached).filter(|(item, kept)| **kept && item.kind == ItemKind::Bound) {
-        out += &text[at..item.range.start];
+        private.text += &text[at..item.range.start];
         let declaration = &text[item.range.clone()];
         let name = item.names.last().map_or("a binding", String::as_str);
-        let resource = item.uses.iter().any(|word| {
-            ["texture_", "sampler", "isampler", "usampler", "image2D", "texture2D"]
-                .iter()
-                .any(|kind| word.starts_with(kind))
-        });
-        if resource {
-            return Err(Error::input(format!(
-                "reads `{name}`, a texture or sampler, which only its own program can fill; wrap it in a function that \
-                 takes what it reads there as parameters"
-            )));
-        }
-        out += &match language {
-            ShaderLanguage::Wgsl => wgsl(declaration),
-            ShaderLanguage::Glsl => glsl(declaration, item, &mut names),
+        let kinds = ["texture", "sampler", "isampler", "usampler", "image2D"];
+        let kind =
+            item.uses.iter().find(|word| *word != name && kinds.iter().any(|kind| word.starts_with(kind)));
+        private.text += &match (kind.map(String::as_str), language) {
+            (Some(kind @ ("texture_2d" | "sampler")), ShaderLanguage::Wgsl) => {
+                let binding = private.slots.len() as u32;
+                private.slots.push(Slot {
+                    name: name.into(),
+                    is_sampler: kind == "sampler",
+                    binding,
+                    bound: None,
+                });
+                rebound(declaration, binding)
+            }
+            (Some(kind), _) => {
+                return Err(Error::input(format!(
+                    "reads `{name}`, a {kind}, which cannot be bound: textures are texture_2d<f32> and sampler, in WGSL; \
+                     call it from a function that takes what it reads there as parameters"
+                )));
+            }
+            (None, ShaderLanguage::Wgsl) => {
+                private.names.extend(item.names.iter().cloned());
+                wgsl(declaration)
+            }
+            (None, ShaderLanguage::Glsl) => glsl(declaration, item, &mut private.names),
         };
-        if language == ShaderLanguage::Wgsl {
-            names.extend(item.names.iter().cloned());
-        }
         at = item.range.end;
     }
-    Ok((out + &text[at..], names))
+    private.text += &text[at..];
+    Ok(private)
+}
+
+/// A declaration with another binding.
+fn rebound(declaration: &str, binding: u32) -> String {
+    let start = words(declaration).iter().find(|word| word.is("var")).map_or(0, |word| word.start);
+    let lines = "\n".repeat(declaration[..start].matches('\n').count());
+    format!("{lines}@group({RESOURCES}) @binding({binding}) {}", &declaration[start..])
 }
 
 /// `@group(0) @binding(1) var<uniform> name: T;` becomes `var<private> name: T;`, at its place.
@@ -116,7 +141,8 @@ mod tests {
 
     fn private(text: &str, language: ShaderLanguage) -> (String, Vec<String>) {
         let items = items(text, language);
-        let (text, names) = made_private(text, &items, &vec![true; items.len()], language).unwrap();
+        let Private { text, names, .. } =
+            made_private(text, &items, &vec![true; items.len()], language).unwrap();
         (text.split_whitespace().collect::<Vec<_>>().join(" "), names)
     }
 

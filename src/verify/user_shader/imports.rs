@@ -1,9 +1,11 @@
-//! Joins a shader with the modules that it imports, as naga_oil names them: `#import bevy_pbr::lighting::F_Schlick`.
+//! Joins a shader with the modules that it imports, as naga_oil and WESL name them:
+//! `#import bevy_pbr::lighting::F_Schlick`, `import package::lighting::F_Schlick;`.
 //!
 //! Names of modules become plain ones, `bevy_pbr_lighting_F_Schlick`. The user's own names stay. A module that is not
 //! there is no fault until the function that is checked reaches it.
 
-use super::items::{ItemKind, items};
+use super::conditional;
+use super::items::{Item, ItemKind, items, pruned};
 use super::preprocess::{Preprocessor, Unit};
 use super::source::{self, ShaderLanguage};
 use super::text::{ShaderText, SourceLine};
@@ -28,54 +30,57 @@ pub(super) fn join(
     source: &str,
     path: Option<&Path>,
     language: ShaderLanguage,
-    folders: &[PathBuf],
+    includes: &[PathBuf],
     defines: &[(String, String)],
 ) -> Result<Joined> {
-    let mut preprocessor = Preprocessor::new(language, folders, defines);
-    let mut main = preprocessor.run(name, source, path)?;
-    if language == ShaderLanguage::Wgsl {
-        wesl_imports(&mut main)?;
+    let (before, folders): (Vec<_>, Vec<_>) = includes.iter().cloned().partition(|path| path.is_file());
+    let mut preprocessor = Preprocessor::new(name, language, &folders, defines);
+    let mut main = preprocessor.run(source, path, &before)?;
+    let mut files = preprocessor.files.clone();
+    if language == ShaderLanguage::Glsl {
+        let text = ShaderText { files, lines: main.lines };
+        return Ok(Joined { text, missing: BTreeMap::new() });
     }
-    let mut files = std::mem::take(&mut preprocessor.files);
-    let qualified = |unit: &Unit| unit.lines.iter().any(|line| line.text.contains("::"));
-    if language == ShaderLanguage::Glsl || (main.imports.is_empty() && !qualified(&main)) {
+    wesl(&mut main, &files, &preprocessor)?;
+    if main.imports.is_empty() && !main.lines.iter().any(|line| line.text.contains("::")) {
         let text = ShaderText { files, lines: main.lines };
         return Ok(Joined { text, missing: BTreeMap::new() });
     }
 
-    let modules = modules(path, folders)?;
+    let modules = Modules::new(path, &folders)?;
     let mut lines = Vec::new();
     let mut missing = BTreeMap::new();
-    let mut known = HashSet::<String>::new();
     // The user's file has no prefix, wherever it says that it belongs.
     let own_path = main.path.clone().unwrap_or_default();
-    known.insert(own_path.clone());
-    let mut next = vec![(main, String::new())];
-    while let Some((mut unit, prefix)) = next.pop() {
+    let mut known = HashSet::from([own_path.clone()]);
+    let mut next = vec![(main, own_path.clone(), String::new())];
+    while let Some((mut unit, module, prefix)) = next.pop() {
         let text = ShaderText { files: files.clone(), lines: std::mem::take(&mut unit.lines) };
         let joined = text.joined();
-        let own: HashSet<_> = items(&joined, language)
+        let items = items(&joined, language);
+        let own = items
             .into_iter()
             .filter(|item| item.kind != ItemKind::Directive)
-            .flat_map(|i| i.names)
+            .flat_map(|item| item.names)
             .collect();
-        let resolver = Resolver::new(&unit, &own_path, prefix, own, &modules);
+        let resolver = Resolver::new(&unit, &own_path, &module, prefix, own);
         let (renamed, wanted) = resolver.rename(&joined);
-        for (module, written, plain) in wanted {
-            let Some(module) = module else {
+        for Wanted { module, written, plain } in wanted {
+            let Some(file) = modules.find(&module) else {
                 missing.insert(plain, written);
                 continue;
             };
             if !known.insert(module.clone()) {
                 continue;
             }
-            let file = &modules[&module];
-            let shown = file.display().to_string();
-            let mut preprocessor = Preprocessor::new(language, folders, defines);
-            let mut unit = preprocessor.run(&shown, &source::read(file)?, Some(file))?;
+            let mut preprocessor =
+                Preprocessor::new(&file.display().to_string(), language, &folders, defines);
+            let mut unit = preprocessor.run(&source::read(&file)?, Some(&file), &[])?;
+            wesl(&mut unit, &preprocessor.files, &preprocessor)?;
             unit.lines.iter_mut().for_each(|line| line.file += files.len());
             files.append(&mut preprocessor.files);
-            next.push((unit, prefix_of(&module)));
+            let prefix = prefix_of(&module);
+            next.push((unit, module, prefix));
         }
         lines.extend(hoisted(text.with_text(&renamed).lines, lines.is_empty()));
     }
@@ -83,6 +88,22 @@ pub(super) fn join(
     let (directives, lines): (Vec<_>, Vec<_>) = lines.into_iter().partition(|(_, first)| *first);
     let lines = directives.into_iter().chain(lines).map(|(line, _)| line).collect();
     Ok(Joined { text: ShaderText { files, lines }, missing })
+}
+
+/// Carries out the conditions of WESL and collects its imports.
+fn wesl(unit: &mut Unit, files: &[String], preprocessor: &Preprocessor) -> Result<()> {
+    let text = ShaderText { files: files.to_vec(), lines: std::mem::take(&mut unit.lines) };
+    let translated = conditional::translated(&text.joined(), |condition| preprocessor.condition(condition))?;
+    let items = items(&translated, ShaderLanguage::Wgsl);
+    let is_import = |item: &Item| {
+        item.kind == ItemKind::Directive && translated[item.range.clone()].starts_with("import")
+    };
+    let kept: Vec<_> = items.iter().map(|item| !is_import(item)).collect();
+    for item in items.iter().filter(|item| is_import(item)) {
+        unit.imports.push(translated[item.range.clone()]["import".len()..].trim_end_matches(';').to_owned());
+    }
+    unit.lines = text.with_text(&pruned(&translated, &items, &kept)).lines;
+    Ok(())
 }
 
 /// Marks the lines of a module that must stand first.
@@ -94,60 +115,89 @@ fn hoisted(lines: Vec<SourceLine>, is_main: bool) -> impl Iterator<Item = (Sourc
     })
 }
 
-/// Refuses imports of WESL, with what flattens them.
-fn wesl_imports(unit: &mut Unit) -> Result<()> {
-    let found = unit.lines.iter().position(|line| {
-        let words = words(&line.text);
-        words.len() > 2 && words[0].is("import") && words[1].is_name() && words[2].is("::")
-    });
-    match found {
-        None => Ok(()),
-        Some(k) => Err(Error::input(format!(
-            "line {}: `{}` is WESL; flatten it first, by `cargo install wesl-cli` and `wesl compile FILE > flat.wgsl`",
-            unit.lines[k].number + 1,
-            unit.lines[k].text.trim()
-        ))),
-    }
-}
-
 /// The plain prefix of a module's names.
 fn prefix_of(module: &str) -> String {
     let plain: String = module.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
     format!("{plain}_").replace("__", "_")
 }
 
-/// The modules that files define, by their paths: those beside the shader, and those in the folders given.
-fn modules(path: Option<&Path>, folders: &[PathBuf]) -> Result<HashMap<String, PathBuf>> {
-    let mut found = HashMap::new();
-    let mut count = 0;
-    let beside =
-        path.map(|path| path.parent().filter(|dir| !dir.as_os_str().is_empty()).unwrap_or(Path::new(".")));
-    let mut next: Vec<_> = folders.iter().map(|folder| (folder.clone(), true)).collect();
-    next.extend(beside.map(|folder| (folder.to_path_buf(), false)));
-    while let Some((folder, deep)) = next.pop() {
-        let entries = std::fs::read_dir(&folder).map_err(Error::io("read", &folder))?;
-        let mut paths: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
-        paths.sort();
-        for path in paths {
-            if path.is_dir() && deep && !path.is_symlink() {
-                next.push((path, true));
-            } else if path.extension().is_some_and(|extension| extension == "wgsl") {
-                count += 1;
-                if count > MOST_FILES {
-                    return Err(Error::input(format!(
-                        "{}: there are more than {MOST_FILES} shaders",
-                        folder.display()
-                    )));
-                }
-                let text = std::fs::read_to_string(&path).unwrap_or_default();
-                let line = text.lines().find_map(|line| line.trim().strip_prefix("#define_import_path"));
-                if let Some(module) = line {
-                    found.insert(module.trim().trim_end_matches(';').to_owned(), path.clone());
+/// The files of modules.
+struct Modules<'a> {
+    /// By the paths that files of naga_oil define: files beside the shader, and in the folders given.
+    defined: HashMap<String, PathBuf>,
+    /// The folder of the shader.
+    beside: Option<PathBuf>,
+    folders: &'a [PathBuf],
+}
+
+impl<'a> Modules<'a> {
+    fn new(path: Option<&Path>, folders: &'a [PathBuf]) -> Result<Self> {
+        let beside = path.and_then(|path| path.canonicalize().ok()?.parent().map(Path::to_path_buf));
+        let mut defined = HashMap::new();
+        let mut count = 0;
+        let mut next: Vec<_> = folders.iter().map(|folder| (folder.clone(), true)).collect();
+        next.extend(beside.iter().map(|folder| (folder.clone(), false)));
+        while let Some((folder, deep)) = next.pop() {
+            let entries = std::fs::read_dir(&folder).map_err(Error::io("read", &folder))?;
+            let mut paths: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+            paths.sort();
+            for path in paths {
+                if path.is_dir() && deep && !path.is_symlink() {
+                    next.push((path, true));
+                } else if path.extension().is_some_and(|extension| extension == "wgsl") {
+                    count += 1;
+                    if count > MOST_FILES {
+                        let folder = folder.display();
+                        return Err(Error::input(format!(
+                            "{folder}: there are more than {MOST_FILES} shaders"
+                        )));
+                    }
+                    let text = std::fs::read_to_string(&path).unwrap_or_default();
+                    let line = text.lines().find_map(|line| line.trim().strip_prefix("#define_import_path"));
+                    if let Some(module) = line {
+                        defined.insert(module.trim().trim_end_matches(';').to_owned(), path.clone());
+                    }
                 }
             }
         }
+        Ok(Self { defined, beside, folders })
     }
-    Ok(found)
+
+    /// The file of a module. The folders of a WESL path are those of its package: the shader's own is the nearest around
+    /// it in which the file is, another one is a folder of its name, or what is in its `src`.
+    fn find(&self, module: &str) -> Option<PathBuf> {
+        if let Some(path) = self.defined.get(module) {
+            return Some(path.clone());
+        }
+        let (package, rest) = module.split_once("::")?;
+        let inside = rest.replace("::", "/");
+        let roots: Vec<PathBuf> = match package {
+            "package" => self.beside.as_deref()?.ancestors().map(Path::to_path_buf).collect(),
+            _ => self.folders.iter().flat_map(|folder| packages(folder, package)).collect(),
+        };
+        let mut files = roots
+            .iter()
+            .flat_map(|root| ["wesl", "wgsl"].map(|ending| root.join(format!("{inside}.{ending}"))));
+        files.find(|path| path.is_file())
+    }
+}
+
+/// Where the modules of a package can be, in a folder that has it or is it, with or without its version.
+fn packages(folder: &Path, package: &str) -> Vec<PathBuf> {
+    let is_it = |path: &Path| {
+        let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        name.strip_prefix(package).is_some_and(|rest| rest.is_empty() || rest.starts_with("-"))
+    };
+    let mut found = Vec::new();
+    if is_it(&folder.canonicalize().unwrap_or_default()) {
+        found.push(folder.to_path_buf());
+    }
+    let entries = std::fs::read_dir(folder).into_iter().flatten();
+    let mut inside: Vec<_> =
+        entries.filter_map(|entry| Some(entry.ok()?.path())).filter(|path| is_it(path)).collect();
+    inside.sort();
+    found.extend(inside);
+    found.iter().flat_map(|root| [root.clone(), root.join("src"), root.join("src/shaders")]).collect()
 }
 
 /// What the names in one file mean.
@@ -156,28 +206,39 @@ struct Resolver<'a> {
     own: HashSet<String>,
     /// What an imported name stands for, as a whole path.
     aliases: HashMap<String, String>,
-    modules: &'a HashMap<String, PathBuf>,
     /// The path of the user's own file, whose names stay.
     main: &'a str,
+    /// The path of this file.
+    module: &'a str,
 }
 
-/// An imported item: its module, if it is there; what the user wrote; its plain name.
-type Wanted = (Option<String>, String, String);
+/// An imported item.
+struct Wanted {
+    module: String,
+    written: String,
+    plain: String,
+}
 
 impl<'a> Resolver<'a> {
-    fn new(
-        unit: &Unit,
-        main: &'a str,
-        prefix: String,
-        own: HashSet<String>,
-        modules: &'a HashMap<String, PathBuf>,
-    ) -> Self {
+    fn new(unit: &Unit, main: &'a str, module: &'a str, prefix: String, own: HashSet<String>) -> Self {
         let mut aliases = HashMap::new();
         for import in &unit.imports {
-            let words = words(import);
-            import_list(&words, "", &mut aliases, 0);
+            import_list(&words(import), "", &mut aliases, 0);
         }
-        Self { prefix, own, aliases, modules, main }
+        Self { prefix, own, aliases, main, module }
+    }
+
+    /// A path of WESL from the root of a package: `package` is this file's, `super` the folder around it.
+    fn absolute(&self, path: String) -> String {
+        let package = self.module.split("::").next().filter(|package| !package.is_empty());
+        if let (Some(rest), Some(package)) = (path.strip_prefix("package::"), package) {
+            return format!("{package}::{rest}");
+        }
+        match (path.strip_prefix("super::"), self.module.rsplit_once("::")) {
+            (Some(rest), Some((around, _))) => format!("{around}::{rest}"),
+            (Some(rest), None) => format!("package::{rest}"),
+            _ => path,
+        }
     }
 
     /// Replaces paths and imported names by plain ones.
@@ -201,14 +262,18 @@ impl<'a> Resolver<'a> {
                 path += words[k + 1].text;
                 k += 2;
             }
+            let path = self.absolute(path);
             let plain = match path.rsplit_once("::") {
                 None if self.own.contains(word.text) => format!("{}{}", self.prefix, word.text),
                 None => continue,
                 Some((module, item)) if self.main == module => item.to_owned(),
                 Some((module, item)) => {
                     let plain = format!("{}{item}", prefix_of(module));
-                    let there = self.modules.contains_key(module).then(|| module.to_owned());
-                    wanted.push((there, path.clone(), plain.clone()));
+                    wanted.push(Wanted {
+                        module: module.into(),
+                        written: path.clone(),
+                        plain: plain.clone(),
+                    });
                     plain
                 }
             };

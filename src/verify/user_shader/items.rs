@@ -205,6 +205,23 @@ pub(super) fn reached(items: &[Item], entry: &str) -> Vec<bool> {
     reached
 }
 
+/// The function at an offset, if it is kept and another one of its name is too.
+pub(super) fn overload(items: &[Item], kept: &[bool], offset: usize) -> Option<usize> {
+    let at = items.iter().position(|item| item.range.contains(&offset))?;
+    let same =
+        |k: &usize| kept[*k] && items[*k].kind == ItemKind::Function && items[*k].names == items[at].names;
+    (same(&at) && (0..items.len()).filter(same).count() > 1).then_some(at)
+}
+
+/// Takes repetitions of a declaration out, as of a chunk that both stages of a pipeline include.
+pub(super) fn without_repetitions(text: &str, items: &[Item], kept: &mut [bool]) {
+    let mut seen = HashSet::new();
+    for (item, kept) in items.iter().zip(kept) {
+        let body: Vec<_> = text[item.range.clone()].split_whitespace().collect();
+        *kept &= item.kind == ItemKind::Directive || !*kept || seen.insert(body);
+    }
+}
+
 /// The text with spaces in place of what is not kept.
 pub(super) fn pruned(text: &str, items: &[Item], kept: &[bool]) -> String {
     let mut out = String::with_capacity(text.len());

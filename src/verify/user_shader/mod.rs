@@ -13,10 +13,12 @@
 
 mod bindings;
 mod compose;
+mod conditional;
 mod glsl;
 mod imports;
 mod items;
 mod preprocess;
+mod resources;
 mod roles;
 mod run;
 mod signature;
@@ -25,16 +27,19 @@ mod text;
 mod token;
 
 pub use compose::UpAxis;
+pub use resources::{ShaderResource, ShaderTexture};
 pub use run::{UserShader, directions};
 pub use signature::ShaderParameter;
 pub use source::is_shader;
 
 use crate::base::error::{Error, Result};
 use crate::verify::ParameterRange;
+use bindings::Private;
 use imports::Joined;
 use items::{Item, ItemKind};
-use naga::valid::{Capabilities, ShaderStages, ValidationFlags, Validator};
+use naga::valid::{Capabilities, FunctionInfo, ShaderStages, ValidationFlags, Validator};
 use naga::{Block, Handle, Module, Statement, TypeInner};
+use resources::Slot;
 use signature::{Signature, Understood, Wishes, show};
 use source::ShaderLanguage;
 use std::path::{Path, PathBuf};
@@ -51,7 +56,7 @@ pub struct ShaderOptions {
     pub result: Option<String>,
     /// The axis that is the normal.
     pub up: UpAxis,
-    /// Folders of included files and imported modules.
+    /// Folders of included files and imported modules, and files to put before the shader.
     pub includes: Vec<PathBuf>,
     /// Macros, and what they stand for.
     pub defines: Vec<(String, String)>,
@@ -67,6 +72,8 @@ pub struct UserFunction {
     code: String,
     call: String,
     up: UpAxis,
+    /// Textures and samplers.
+    slots: Vec<Slot>,
     /// Whether it, or what it calls, has a loop.
     loops: bool,
     /// Whether it computes in f16.
@@ -84,7 +91,9 @@ impl UserFunction {
     /// cannot be a BRDF; when it needs what only its program could give it, such as a texture.
     pub fn parse(file: impl Into<String>, source: impl Into<String>, entry: &str) -> Result<Self> {
         let options = ShaderOptions { entry: Some(entry.into()), ..ShaderOptions::default() };
-        Self::find(file.into(), source.into(), None, &options)
+        let file = file.into();
+        let source = source::clean(&file, source.into());
+        Self::find(file, source, None, &options)
     }
 
     /// Finds a function in a file of WGSL or GLSL.
@@ -92,12 +101,17 @@ impl UserFunction {
     /// # Errors
     /// As [`Self::parse`], and when the file cannot be read, or several functions could be meant.
     pub fn read(path: &Path, options: &ShaderOptions) -> Result<Self> {
+        if let Some(none) = options.includes.iter().find(|path| !path.exists()) {
+            return Err(Error::input(format!(
+                "{}: there is no such folder or file to include",
+                none.display()
+            )));
+        }
         let text = source::read(path)?;
         Self::find(path.display().to_string(), text, Some(path), options)
     }
 
     fn find(file: String, text: String, path: Option<&Path>, options: &ShaderOptions) -> Result<Self> {
-        let text = source::clean(&file, text);
         let language = source::language(&file, &text);
         let joined = imports::join(&file, &text, path, language, &options.includes, &options.defines);
         let joined = joined.map_err(|error| error.at(&file))?;
@@ -137,6 +151,21 @@ impl UserFunction {
             Understood::Role(_) => None,
         };
         self.signature.understood.iter().filter_map(parameter).collect()
+    }
+
+    /// Binds a texture or a sampler that it reads.
+    ///
+    /// # Errors
+    /// When it reads none of this name, or the other kind.
+    pub fn bind(&mut self, name: &str, resource: ShaderResource) -> Result<()> {
+        let slot = self.slots.iter_mut().find(|slot| slot.name == name);
+        slot.ok_or_else(|| Error::input(format!("fn {} reads no texture nor sampler `{name}`", self.entry)))?
+            .bind(resource)
+    }
+
+    /// A texture or sampler that it reads and that is not bound yet.
+    pub fn unbound(&self) -> Option<&str> {
+        self.slots.iter().find(|slot| slot.bound.is_none()).map(|slot| slot.name.as_str())
     }
 
     /// The axis that is its normal.
@@ -223,17 +252,27 @@ impl Shader {
                 Err(why) => others.push((name, why)),
             }
         }
-        // Names tell more than places.
+        // A term of a BRDF is not meant, and names tell more than places.
+        if fitting.iter().any(|function| !roles::is_term(&function.entry)) {
+            fitting.retain(|function| !roles::is_term(&function.entry));
+        }
         if fitting.iter().any(|function| function.signature.by_name) {
             fitting.retain(|function| function.signature.by_name);
         }
         let file = &self.file;
         match fitting.len() {
+            1 if roles::is_term(&fitting[0].entry) => Err(Error::input(format!(
+                "{file}: fn {} can be a BRDF by what it takes, and is a term of one by its name; name it to check it",
+                fitting[0].entry
+            ))),
             1 => Ok(fitting.remove(0)),
             0 if others.len() == 1 => Err(others.remove(0).1),
             0 => {
-                let list: Vec<_> =
-                    others.iter().take(LISTED).map(|(name, why)| format!("{name}: {why}")).collect();
+                let list: Vec<_> = others
+                    .iter()
+                    .take(LISTED)
+                    .map(|(name, why)| format!("  {name}: {}", brief(why)))
+                    .collect();
                 Err(Error::input(format!("{file}: no function can be a BRDF:\n{}", list.join("\n"))))
             }
             count => {
@@ -282,19 +321,29 @@ impl Shader {
                  include folder"
             )));
         }
-        let (private, names) = bindings::made_private(&self.text, &self.items, &reached, self.language)
+        let private = bindings::made_private(&self.text, &self.items, &reached, self.language)
             .map_err(|error| at(Error::input(format!("fn {entry} {error}"))))?;
         // The declarations lie where they lay, but for those that became variables.
-        let items = items::items(&private, self.language);
-        let text =
-            self.joined.text.with_text(&items::pruned(&private, &items, &items::reached(&items, entry)));
-        match self.language {
-            ShaderLanguage::Wgsl => self.wgsl(entry, &text, &names),
-            ShaderLanguage::Glsl => self.glsl(entry, &text, &names),
+        let items = items::items(&private.text, self.language);
+        let mut kept = items::reached(&items, entry);
+        items::without_repetitions(&private.text, &items, &mut kept);
+        loop {
+            let text = self.joined.text.with_text(&items::pruned(&private.text, &items, &kept));
+            if self.language == ShaderLanguage::Wgsl {
+                return self.wgsl(entry, &text, &private);
+            }
+            match glsl::parse(&text) {
+                Ok(module) => return self.glsl(entry, &text, module, &private.names),
+                Err((offset, error)) => {
+                    // Another function of the same name may not be what is wanted.
+                    let overload = offset.and_then(|offset| items::overload(&items, &kept, offset));
+                    kept[overload.ok_or(error)?] = false;
+                }
+            }
         }
     }
 
-    fn wgsl(&self, entry: &str, text: &text::ShaderText, names: &[String]) -> Result<UserFunction> {
+    fn wgsl(&self, entry: &str, text: &text::ShaderText, private: &Private) -> Result<UserFunction> {
         let code = text.joined();
         let module = naga::front::wgsl::parse_str(&code).map_err(|error| text.parse_error(&error))?;
         let found = module.functions.iter().find(|(_, function)| function.name.as_deref() == Some(entry));
@@ -305,20 +354,35 @@ impl Shader {
         let info = info.map_err(|error| text.validation_error(&error))?;
         let shown = show(&module, function);
         let is_compute = info[handle].available_stages.contains(ShaderStages::COMPUTE);
-        let globals: Vec<_> = globals(&module, names).into_iter().map(|(name, _, ty)| (name, ty)).collect();
+        let globals: Vec<_> = globals(&module, &info[handle], &private.names)
+            .into_iter()
+            .map(|(name, _, ty)| (name, ty))
+            .collect();
+        let mut slots = private.slots.clone();
+        slots.retain(|slot| {
+            !self::globals(&module, &info[handle], std::slice::from_ref(&slot.name)).is_empty()
+        });
         let signature = Signature::new(&module, function, &globals, &self.wishes);
-        self.finish(entry, &shown, signature, is_compute, &module, code, entry)
+        let function = self.finish(entry, &shown, signature, is_compute, &module, code, entry);
+        function.map(|function| UserFunction { slots, ..function })
     }
 
-    fn glsl(&self, entry: &str, text: &text::ShaderText, names: &[String]) -> Result<UserFunction> {
-        let module = glsl::parse(text)?;
-        // Of overloads the last that fits.
+    fn glsl(
+        &self,
+        entry: &str,
+        text: &text::ShaderText,
+        module: Module,
+        names: &[String],
+    ) -> Result<UserFunction> {
+        let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module);
+        let info = info.map_err(|error| text.validation_error(&error))?;
+        // Of overloads the first that fits.
         let mut best = None;
         for (handle, function) in module.functions.iter().filter(|(_, f)| f.name.as_deref() == Some(entry)) {
-            let globals = globals(&module, names);
+            let globals = globals(&module, &info[handle], names);
             let types: Vec<_> = globals.iter().map(|(name, _, ty)| (name.clone(), *ty)).collect();
             let signature = Signature::new(&module, function, &types, &self.wishes);
-            if best.is_none() || signature.is_ok() {
+            if best.as_ref().is_none_or(|(.., before): &(_, _, _, Result<_>)| before.is_err()) {
                 best = Some((handle, show(&module, function), globals, signature));
             }
         }
@@ -358,18 +422,31 @@ impl Shader {
             half: module.types.iter().any(|(_, ty)| is_half(&ty.inner)),
             code,
             call: call.into(),
+            slots: Vec::new(),
             up: self.up,
         })
     }
 }
 
-/// The variables of a module with these names.
+/// The line of an error that says what is wrong.
+fn brief(why: &Error) -> String {
+    let why = why.to_string();
+    why.lines()
+        .find_map(|line| line.strip_prefix("error: "))
+        .or(why.lines().next())
+        .unwrap_or_default()
+        .to_owned()
+}
+
+/// The variables of a module with these names, of those that a function reads.
 fn globals(
     module: &Module,
+    info: &FunctionInfo,
     names: &[String],
 ) -> Vec<(String, Handle<naga::GlobalVariable>, Handle<naga::Type>)> {
     let find = |name: &String| {
         let found = module.global_variables.iter().find(|(_, v)| v.name.as_ref() == Some(name));
+        let found = found.filter(|(handle, _)| !info[*handle].is_empty());
         found.map(|(handle, variable)| (name.clone(), handle, variable.ty))
     };
     names.iter().filter_map(find).collect()

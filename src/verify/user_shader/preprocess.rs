@@ -42,7 +42,7 @@ pub(super) struct Preprocessor<'a> {
 /// How deep files may include each other.
 const DEEPEST: usize = 64;
 /// Characters that macros may make.
-const LONGEST: usize = 1 << 22;
+const LONGEST: usize = 1 << 20;
 
 /// One `#if`, inside which lines may count.
 struct Condition {
@@ -55,34 +55,49 @@ struct Condition {
 }
 
 impl<'a> Preprocessor<'a> {
-    pub fn new(language: ShaderLanguage, folders: &'a [PathBuf], defines: &[(String, String)]) -> Self {
+    /// A preprocessor of the file `name`, which is the first of its files.
+    pub fn new(
+        name: &str,
+        language: ShaderLanguage,
+        folders: &'a [PathBuf],
+        defines: &[(String, String)],
+    ) -> Self {
         let define =
             |(name, body): &(String, String)| (name.clone(), Macro { parameters: None, body: body.clone() });
         Self {
             folders,
             language,
             macros: defines.iter().map(define).collect(),
-            files: Vec::new(),
+            files: vec![name.into()],
             once: HashSet::new(),
             depth: 0,
             expanded: 0,
         }
     }
 
-    /// Preprocesses a text; `path` is where it lies, if it is a file.
-    pub fn run(&mut self, name: &str, text: &str, path: Option<&Path>) -> Result<Unit> {
+    /// Preprocesses the file's text; `path` is where it lies, if it is a file. `before` are put before it.
+    pub fn run(&mut self, text: &str, path: Option<&Path>, before: &[PathBuf]) -> Result<Unit> {
         let mut unit = Unit::default();
-        self.file(name, text, path, &mut unit)?;
+        for path in before {
+            let name = path.display().to_string();
+            self.files.push(name);
+            self.file(self.files.len() - 1, &source::read(path)?, Some(path), &mut unit)?;
+        }
+        self.file(0, text, path, &mut unit)?;
         Ok(unit)
     }
 
-    fn file(&mut self, name: &str, text: &str, path: Option<&Path>, unit: &mut Unit) -> Result<()> {
+    /// Whether the condition of an `#if` holds.
+    pub fn condition(&self, text: &str) -> Result<bool> {
+        self.holds("if", text)
+    }
+
+    fn file(&mut self, file: usize, text: &str, path: Option<&Path>, unit: &mut Unit) -> Result<()> {
+        let name = self.files[file].clone();
         if self.depth == DEEPEST {
             return Err(Error::input(format!("{name} includes itself")));
         }
         self.depth += 1;
-        let file = self.files.len();
-        self.files.push(name.into());
         let text = without_comments(text, self.language == ShaderLanguage::Wgsl);
         let lines: Vec<&str> = text.lines().collect();
         let mut conditions = Vec::<Condition>::new();
@@ -202,7 +217,8 @@ impl<'a> Preprocessor<'a> {
             return Ok(());
         }
         let text = source::read(&path)?;
-        self.file(&path.display().to_string(), &text, Some(&path), unit)
+        self.files.push(path.display().to_string());
+        self.file(self.files.len() - 1, &text, Some(&path), unit)
     }
 
     fn define(&mut self, text: &str) -> Result<()> {
@@ -479,8 +495,8 @@ mod tests {
 
     fn run(text: &str) -> Result<String> {
         let defines = [("SET".to_owned(), "2".to_owned())];
-        let mut preprocessor = Preprocessor::new(ShaderLanguage::Wgsl, &[], &defines);
-        let unit = preprocessor.run("a.wgsl", text, None)?;
+        let mut preprocessor = Preprocessor::new("a.wgsl", ShaderLanguage::Wgsl, &[], &defines);
+        let unit = preprocessor.run(text, None, &[])?;
         Ok(unit.lines.iter().map(|line| line.text.clone() + "\n").collect())
     }
 

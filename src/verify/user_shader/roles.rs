@@ -147,7 +147,7 @@ const NAMES: [(FrameVector, &[&str]); 7] = [
         Bitangent,
         &["b", "y", "bitangent", "binormal", "bitangentdir", "anisotropicb", "anisotropybitangent", "wy"],
     ),
-    (Reflection, &["r", "refl", "reflected", "reflection", "reflectdir", "reflectiondir"]),
+    (Reflection, &["r", "refl", "reflected", "reflection", "reflectdir", "refldir", "reflectiondir"]),
 ];
 
 /// Names of cosines that do not spell both vectors.
@@ -158,14 +158,21 @@ const COSINES: [(FrameVector, FrameVector, &[&str]); 4] = [
     (Light, Half, &["costhetad", "cosd", "coslh", "cosvh", "costhetalh"]),
 ];
 
+/// Names of directions from the light to the surface, which PlayCanvas has.
+const FROM_LIGHT: [&str; 4] = ["lightdirnorm", "lightdirnormw", "fromlight", "lighttosurface"];
+
 /// The role of a vector, by its name.
-pub(super) fn vector(name: &str) -> Option<FrameVector> {
+pub(super) fn vector(name: &str) -> Option<Role> {
     // Lower-case x, y, and r are numbers more often than axes.
     if matches!(name, "x" | "y") {
         return None;
     }
     let name = plain(name);
-    NAMES.iter().find(|(_, names)| names.contains(&name.as_str())).map(|&(vector, _)| vector)
+    if FROM_LIGHT.contains(&name.as_str()) {
+        return Some(Role { kind: RoleKind::Vector(Light), negative: true });
+    }
+    let found = NAMES.iter().find(|(_, names)| names.contains(&name.as_str()));
+    found.map(|&(vector, _)| RoleKind::Vector(vector).into())
 }
 
 /// The role of a scalar, by its name: `NdotL`, `n_dot_l`, `NoL`, `dotNL`, `cos_theta_i`.
@@ -200,6 +207,15 @@ pub(super) fn cosine(name: &str) -> Option<(FrameVector, FrameVector)> {
     }
 }
 
+/// Whether a function's name says that it is a term of a BRDF: `V_SmithGGX`, `G1`, `ggxShadowMaskG2`.
+pub(super) fn is_term(name: &str) -> bool {
+    let letter = ["D_", "F_", "G_", "V_", "G1", "G2"].iter().any(|start| name.starts_with(start));
+    let name = plain(name);
+    let word =
+        ["visibility", "mask", "fresnel", "distribution", "geometry", "schlick", "lambda", "pdf", "sample"];
+    letter || word.iter().any(|word| name.contains(word)) || name.ends_with("g1") || name.ends_with("g2")
+}
+
 fn plain(name: &str) -> String {
     name.chars().filter(|&c| c != '_').flat_map(char::to_lowercase).collect()
 }
@@ -216,7 +232,7 @@ impl FromStr for Role {
         let kind = match name {
             "X" | "x" => Some(RoleKind::Vector(Tangent)),
             "Y" | "y" => Some(RoleKind::Vector(Bitangent)),
-            _ => vector(name).map(RoleKind::Vector).or(cosine(name).map(|(a, b)| RoleKind::Cosine(a, b))),
+            _ => vector(name).map(|role| role.kind).or(cosine(name).map(|(a, b)| RoleKind::Cosine(a, b))),
         };
         let kind = kind.ok_or_else(|| {
             Error::input(format!(
@@ -277,7 +293,7 @@ mod tests {
             ("binormal", Bitangent),
             ("R", Reflection),
         ] {
-            assert_eq!(vector(name), Some(role), "{name}");
+            assert_eq!(vector(name), Some(RoleKind::Vector(role).into()), "{name}");
         }
         for name in ["x", "base_color", "f0", "direction", "position"] {
             assert_eq!(vector(name), None, "{name}");

@@ -2,6 +2,7 @@
 
 use super::UserFunction;
 use super::compose::{STRIDE, WORKGROUP, compose, job};
+use super::resources::{RESOURCES, bind_group, has_f32};
 use crate::backend::gpu::device::Device;
 use crate::base::angles::Angles;
 use crate::base::error::{Error, Result};
@@ -65,6 +66,8 @@ pub struct UserShader<'a> {
     loop_turns: Option<u32>,
     pipeline: wgpu::ComputePipeline,
     bindings: wgpu::BindGroup,
+    /// Textures and samplers, where it reads some.
+    resources: Option<wgpu::BindGroup>,
     job: wgpu::Buffer,
     pairs: wgpu::Buffer,
     values: wgpu::Buffer,
@@ -107,6 +110,9 @@ impl<'a> UserShader<'a> {
                 function.entry,
                 names().cloned().collect::<Vec<_>>().join(", ")
             )));
+        }
+        if let Some(name) = function.unbound() {
+            return Err(Error::input(format!("{}: nothing is bound to `{name}`", function.name())));
         }
         let fitted = function.parameters().iter().zip(parameters).map(|(own, range)| own.fitted(range));
         let parameters = fitted.collect::<Result<_>>()?;
@@ -166,6 +172,12 @@ impl<'a> UserShader<'a> {
                 .map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource })
                 .collect::<Vec<_>>(),
         });
+        let has_resources = !function.slots.is_empty();
+        let resources = device.guarded(|| {
+            let layout = has_resources.then(|| pipeline.get_bind_group_layout(RESOURCES));
+            let (wgpu, queue) = device.wgpu();
+            Ok(layout.map(|layout| bind_group(wgpu, queue, &layout, &function.slots)))
+        })?;
         device.fault()?;
         Ok(Self {
             device,
@@ -176,6 +188,7 @@ impl<'a> UserShader<'a> {
             loop_turns,
             pipeline,
             bindings,
+            resources,
             job: job_buffer,
             pairs,
             values,
@@ -205,6 +218,9 @@ impl<'a> UserShader<'a> {
             let mut pass = encoder.begin_compute_pass(&Default::default());
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(GROUP, &self.bindings, &[]);
+            if let Some(resources) = &self.resources {
+                pass.set_bind_group(RESOURCES, resources, &[]);
+            }
             pass.dispatch_workgroups(angles.len().div_ceil(WORKGROUP) as u32, 1, 1);
         }
         encoder.copy_buffer_to_buffer(&self.values, 0, &self.staging, 0, bytes);
@@ -295,6 +311,10 @@ impl Subject for UserShader<'_> {
                 self.function.entry
             )
         };
-        self.loop_turns.map(stops).into_iter().collect()
+        let mut notes: Vec<_> = self.loop_turns.map(stops).into_iter().collect();
+        if self.resources.is_some() && !has_f32(self.device.wgpu().0) {
+            notes.push("its textures are in f16, as this device does not filter f32".into());
+        }
+        notes
     }
 }

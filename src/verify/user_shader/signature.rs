@@ -266,14 +266,15 @@ impl Reader<'_> {
         if let Some((_, role)) = self.positional.iter().find(|(name, _)| name == path) {
             return Some(*role);
         }
-        // Globals, and what is in arrays, have roles only by wish.
-        if !named || path.contains('[') {
+        // Globals, and elements of arrays, have roles only by wish.
+        if !named || last.contains('[') {
             return None;
         }
         if is_vector {
             let role = vector(last)?;
-            let letter = last.len() == 1 && matches!(role, FrameVector::Tangent | FrameVector::Bitangent);
-            return Some(RoleKind::Vector(role).into()).filter(|_| self.letters || !letter);
+            let is_tangent =
+                [FrameVector::Tangent, FrameVector::Bitangent].map(RoleKind::Vector).contains(&role.kind);
+            return Some(role).filter(|_| self.letters || last.len() > 1 || !is_tangent);
         }
         let (a, b) = cosine(last).filter(|_| is_scalar)?;
         Some(RoleKind::Cosine(a, b).into())
@@ -296,6 +297,9 @@ impl Reader<'_> {
         let module = self.module;
         match &module.types[ty].inner {
             TypeInner::Pointer { base, .. } => self.collect(path, *base, depth, named, roles),
+            TypeInner::Array { base, .. } if depth < 16 => {
+                self.collect(&format!("{path}[0]"), *base, depth + 1, named, roles);
+            }
             TypeInner::Struct { members, .. } if depth < 16 => {
                 for member in members {
                     let name = member.name.as_deref().unwrap_or("_");
