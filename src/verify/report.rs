@@ -151,10 +151,22 @@ impl Report {
 /// Options that give this input back, bit for bit: `--set alpha=0.1 --theta-i 1.5 …`.
 impl fmt::Display for Input {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (name, value) in &self.setting {
+        let stem = |name: &str| {
+            name.rsplit_once('.').filter(|(_, axis)| "xyzw".contains(axis)).map(|(stem, _)| stem.to_owned())
+        };
+        // The components of a vector go by its name, equal ones as one.
+        for vector in self.setting.chunk_by(|(a, _), (b, _)| stem(a).is_some() && stem(a) == stem(b)) {
+            let name = match vector {
+                [(name, _)] => name.clone(),
+                _ => stem(&vector[0].0).unwrap_or_default(),
+            };
+            let mut values: Vec<_> = vector.iter().map(|(_, value)| format!("{value:?}")).collect();
+            if values.iter().all(|value| *value == values[0]) {
+                values.truncate(1);
+            }
             // A shell takes brackets for a pattern.
             let quote = if name.contains('[') { "'" } else { "" };
-            write!(f, "--set {quote}{name}={value:?}{quote} ")?;
+            write!(f, "--set {quote}{name}={}{quote} ", values.join(","))?;
         }
         // The shortest digits that read back as the same f64, 17 at most.
         let Angles { theta_i, phi_i, theta_e, phi_e } = self.angles;

@@ -43,6 +43,7 @@ mod radiometry;
 mod restricted;
 #[cfg(feature = "scene")]
 mod scenes;
+mod shaders;
 #[cfg(feature = "cli")]
 mod storage;
 mod stream;

@@ -1,7 +1,7 @@
 //! The text of a shader, whose lines know where they stand in the user's files.
 
 use crate::base::error::Error;
-use codespan_reporting::diagnostic::{Diagnostic, Label};
+use codespan_reporting::diagnostic::{Diagnostic, Label, LabelStyle};
 use codespan_reporting::files::SimpleFiles;
 use codespan_reporting::term;
 use naga::{Span, WithSpan};
@@ -80,17 +80,18 @@ impl ShaderText {
         for (name, text) in self.files.iter().zip(&texts) {
             ids.push(files.add(name.clone(), text.join("\n")));
         }
-        let label = |(range, words): (Range<usize>, String)| {
+        let label = |(k, (range, words)): (usize, (Range<usize>, String))| {
             let (line, column) = self.line(range.start);
             let line = line?;
             let before: usize = texts[line.file][..line.number].iter().map(|text| text.len() + 1).sum();
             let start = before + column;
             let end = (start + range.len()).min(before + line.text.len()).max(start);
-            Some(Label::primary(ids[line.file], start..end).with_message(words))
+            let style = if k == 0 { LabelStyle::Primary } else { LabelStyle::Secondary };
+            Some(Label::new(style, ids[line.file], start..end).with_message(words))
         };
         let diagnostic = Diagnostic::error()
             .with_message(what)
-            .with_labels(places.into_iter().filter_map(label).collect())
+            .with_labels(places.into_iter().enumerate().filter_map(label).collect())
             .with_notes(notes);
         match term::emit_into_string(&term::Config::default(), &files, &diagnostic) {
             Ok(out) => Error::input(format!("{} is not valid:\n{}", self.files[0], out.trim_end())),
@@ -110,13 +111,16 @@ impl ShaderText {
 
     /// An error of naga's validator, with its causes.
     pub fn validation_error<E: std::error::Error>(&self, error: &WithSpan<E>) -> Error {
-        let range = |(span, words): &(Span, String)| Some((span.to_range()?, words.clone()));
+        let place = |(span, words): &(Span, String)| Some((span.to_range()?, words.clone()));
+        let mut places: Vec<_> = error.spans().filter_map(place).collect();
+        // The narrowest says where; the widest is the whole function.
+        places.sort_by_key(|(range, _)| range.len());
         let mut causes = Vec::new();
         let mut cause = error.as_inner().source();
         while let Some(error) = cause {
             causes.push(error.to_string());
             cause = error.source();
         }
-        self.error(&error.as_inner().to_string(), error.spans().filter_map(range).collect(), causes)
+        self.error(&error.as_inner().to_string(), places, causes)
     }
 }
