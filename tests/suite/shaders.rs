@@ -86,7 +86,7 @@ fn parameters_of_every_type_arrive() {
     let integers: Vec<_> = function.parameters().iter().filter(|p| p.is_integer()).map(|p| &p.name).collect();
     assert_eq!(integers, ["b", "c", "m.mode"]);
     let setting = [0.5, -3.0, 1.0, 1.0, 2.0, 3.0, 4.0, 0.0, 0.0, 0.0, 0.0, 5.0, 4e9, 0.0, 0.0, 6.0, 0.0];
-    assert_eq!(evaluate(function, &setting), [997.5, 321.0, 4e9 as f32 + 20.0]);
+    assert_eq!(evaluate(function, &setting), [997.5, 321.0, 4e9_f32 + 20.0]);
 }
 
 /// Integers and bools are searched among whole numbers, and have no others.

@@ -101,11 +101,13 @@ pub fn check_shader(args: &Args, path: &Path, entry: Option<String>) -> Result<(
 
 /// How the command line wants the shader to be read.
 fn options(args: &Args, entry: Option<String>) -> Result<ShaderOptions> {
-    let mut options = ShaderOptions::default();
-    options.entry = entry;
-    options.result = args.result.clone();
-    options.up = args.up.parse().map_err(|error: Error| error.at("--up"))?;
-    options.includes = args.include.clone();
+    let mut options = ShaderOptions {
+        entry,
+        result: args.result.clone(),
+        up: args.up.parse().map_err(|error: Error| error.at("--up"))?,
+        includes: args.include.clone(),
+        ..ShaderOptions::default()
+    };
     for role in &args.role {
         let (name, role) = role.split_once('=').ok_or_else(|| {
             Error::input(format!(

@@ -317,8 +317,8 @@ impl Shader {
         if let Some((written, place)) = missing {
             let module = written.rsplit_once("::").map_or(written.as_str(), |(module, _)| module);
             return Err(Error::input(format!(
-                "{place}: fn {entry} needs {written}, and no file here has `#define_import_path {module}`; give its folder as an \
-                 include folder"
+                "{place}: fn {entry} needs {written}, and no file here is the module {module}, by its path or by \
+                 #define_import_path; give its folder as an include folder"
             )));
         }
         let private = bindings::made_private(&self.text, &self.items, &reached, self.language)
