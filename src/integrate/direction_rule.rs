@@ -13,8 +13,8 @@ use rayon::prelude::*;
 pub(crate) struct DirectionRule {
     source: DirectionSource,
     pub fixed: Vec<Fixed>,
-    settings: Vec<Setting>,
-    tolerance: f64,
+    pub settings: Vec<Setting>,
+    pub tolerance: f64,
     /// The factors that multiply the lobe at each setting; empty where it has none.
     scales: Vec<LobeScale>,
     /// Whether the fixed direction is ωe.
@@ -50,8 +50,25 @@ impl DirectionRule {
         Self { scales, fixed_is_exitant, tolerance, ..self }
     }
 
+    /// Whether factors multiply the lobe.
+    pub fn has_factors(&self) -> bool {
+        !self.scales.is_empty()
+    }
+
     /// The inner integral of an index, in which the fixed direction turns fastest.
     pub fn integral(&self, index: usize) -> DirectionSum {
+        self.integral_by(index, &|fixed, setting| match self.source {
+            DirectionSource::Map(map) => (map.samples)(fixed, setting, self.tolerance),
+            DirectionSource::Product(_) | DirectionSource::Delta(_) => Vec::new(),
+        })
+    }
+
+    /// The same over the directions that `map_samples` gives, of lobes that have a map.
+    pub fn integral_by(
+        &self,
+        index: usize,
+        map_samples: &dyn Fn(&Fixed, &Setting) -> Vec<Sample>,
+    ) -> DirectionSum {
         let row = index / self.fixed.len();
         let (setting, fixed) = (&self.settings[row], &self.fixed[index % self.fixed.len()]);
         let scale = self.scales.get(row).cloned().unwrap_or_default();
@@ -59,7 +76,7 @@ impl DirectionRule {
         let sum = match self.source {
             DirectionSource::Map(map) => match (map.limit)(fixed.mu, setting) {
                 Some(limit) => DirectionSum::Limit(limit),
-                None => DirectionSum::Samples((map.samples)(fixed, setting, self.tolerance)),
+                None => DirectionSum::Samples(map_samples(fixed, setting)),
             },
             DirectionSource::Product(rule) => {
                 DirectionSum::Samples(rule.samples(fixed, &scale, self.tolerance))

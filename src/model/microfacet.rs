@@ -71,6 +71,21 @@ pub struct Microfacet {
     pub(crate) seam: Option<f64>,
     /// How many more nodes in μ its mean over directions takes than Schlick's, at a tolerance.
     pub(crate) mean_nodes: fn(&Setting, f64) -> usize,
+    /// What integrals of lobes share that differ in F alone, where that pays.
+    pub(crate) series: Option<FresnelSeries>,
+}
+
+/// A lobe as F times the rest of it, F being a polynomial of c = ωi·ωm within a tolerance.
+#[derive(Debug)]
+pub(crate) struct FresnelSeries {
+    /// The polynomial's degree.
+    pub degree: fn(&Setting, tolerance: f64) -> usize,
+    /// F for c and 1 − c.
+    pub fresnel: fn(c: f64, x: f64, &Setting) -> [f64; 2],
+    /// D G2 / (4 μi μe), and c.
+    pub facet: fn(&Pair, &Azimuth, &Setting) -> [f64; 2],
+    /// Directions that integrate D G2 / (4 μi μe) times polynomials of a degree.
+    pub samples: fn(&directions::Fixed, &Setting, tolerance: f64, degree: usize) -> Vec<directions::Sample>,
 }
 
 /// The parts there are: the default is the first of its kind, and an entry here is all that a new one takes.
@@ -282,6 +297,18 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
             Some(counts) => counts.mean_nodes,
             None => |_, _| MEAN_NODES_UNKNOWN,
         },
+        series: match (Self::COUNTS, F::AS_POLYNOMIAL) {
+            (Some(_), Some(polynomial)) => Some(FresnelSeries {
+                degree: polynomial.degree,
+                fresnel: F::fresnel,
+                facet: |p, a, s| {
+                    let h = Half::new(p, a);
+                    [Facets::<N, M>::lobe(p, a, &h, s), h.c]
+                },
+                samples: Self::samples_of_degree,
+            }),
+            _ => None,
+        },
     };
 
     const PARTS: [Part; 4] = [
@@ -310,12 +337,7 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
     const MAP: directions::Map = match Self::COUNTS {
         Some((rule, ..)) => directions::Map {
             samples: |fixed, s, tolerance| {
-                let counts = Self::counts(fixed.mu, s, tolerance);
-                match Self::DIRECTIONS {
-                    _ if N::AXES.is_some() => stretched::samples::<N, M>(fixed, s, counts, tolerance),
-                    Some(directions) => (directions.samples)(fixed, s, counts, tolerance, M::OF_NORMAL),
-                    None => half_vector::samples::<N, M>(fixed, s, counts, tolerance),
-                }
+                Self::samples(fixed, s, Self::counts(fixed.mu, s, tolerance), tolerance)
             },
             most: |s, tolerance| {
                 let panels = if N::AXES.is_some() { stretched::PANELS } else { 1 };
@@ -383,6 +405,33 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         }
     }
 
+    /// Directions by so many nodes.
+    fn samples(
+        fixed: &directions::Fixed,
+        s: &Setting,
+        counts: [SlopeCounts; 2],
+        tolerance: f64,
+    ) -> Vec<directions::Sample> {
+        match Self::DIRECTIONS {
+            _ if N::AXES.is_some() => stretched::samples::<N, M>(fixed, s, counts, tolerance),
+            Some(directions) => (directions.samples)(fixed, s, counts, tolerance, M::OF_NORMAL),
+            None => half_vector::samples::<N, M>(fixed, s, counts, tolerance),
+        }
+    }
+
+    fn samples_of_degree(
+        fixed: &directions::Fixed,
+        s: &Setting,
+        tolerance: f64,
+        degree: usize,
+    ) -> Vec<directions::Sample> {
+        let (Some((rule, of_masking, _)), Some(polynomial)) = (Self::COUNTS, F::AS_POLYNOMIAL) else {
+            return Vec::new();
+        };
+        let schlick = of_masking((rule.counts)(fixed.mu, s, tolerance), tolerance);
+        Self::samples(fixed, s, (polynomial.counts)(schlick, degree), tolerance)
+    }
+
     /// f μi / p of a normal that was drawn.
     fn estimate(draw: Option<Draw>, mu: f64, s: &Setting) -> [f64; 2] {
         let Some(Draw { x, t2, m, weight: [of_q, rest] }) = draw else { return [f64::NAN; 2] };
@@ -448,7 +497,7 @@ impl<N: Ndf, M: Masking> Facets<N, M> {
         let with = |alpha: f64| Setting { alpha, ..*setting };
         let toward = |mu: f64, cos: f64, sin: f64| Toward {
             mu,
-            setting: axes.map_or(*setting, |[x, y]| with((x * cos).hypot(y * sin))),
+            setting: axes.map_or(*setting, |[x, y]| with(((x * cos).powi(2) + (y * sin).powi(2)).sqrt())),
         };
         let shared = M::visibility::<N>(&toward(p.mu_i, cp + cm, sp + sm), &toward(p.mu_e, cp - cm, sp - sm));
         let d = match axes {

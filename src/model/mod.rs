@@ -23,6 +23,8 @@ pub(crate) mod slope_azimuths;
 #[cfg(test)]
 pub(crate) mod truth;
 
+pub(crate) use microfacet::FresnelSeries;
+
 pub use builder::{ModelBuilder, Twin};
 pub use fresnel::metals::{METALS, Metal};
 pub use microfacet::{FRESNELS, MASKINGS, MICROFACETS, MIRRORS, Microfacet};

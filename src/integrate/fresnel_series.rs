@@ -1,0 +1,238 @@
+//! Integrals of lobes that differ in their Fresnel term alone share all but the term's coefficients.
+//!
+//! F is a polynomial of c = ωi·ωm within a tolerance, F = Σ aₖ Tₖ(2c − 1), so that ρ = Σ aₖ Mₖ with the moments
+//! Mₖ = ∫ D G2 / (4 μi μe) Tₖ(2c − 1) cos θe dωe. The moments of the last tables are kept: the three channels of a film, and
+//! films on different bases, are one integration and some products.
+
+use crate::integrate::direction_rule::{DirectionRule, DirectionSum};
+use crate::model::FresnelSeries;
+use crate::model::directions::{Fixed, Sample};
+use crate::model::lobe::Lobe;
+use crate::model::parameters::Setting;
+use rayon::prelude::*;
+use std::f64::consts::PI;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// The share of a tolerance that the polynomial may be off by.
+const SERIES_SHARE: f64 = 0.1;
+
+/// Degrees are in steps of this, so that few moments differ.
+const STEP: usize = 12;
+
+/// The largest degree that pays.
+const MOST: usize = 8 * STEP;
+
+/// Numbers that are kept at most: 128 MiB.
+const KEPT: usize = 1 << 24;
+
+/// The inner integrals of a rule, as products of moments and coefficients.
+pub(crate) struct SeriesIntegrals {
+    moments: Arc<Moments>,
+    /// Those of (A, B) for each row.
+    coefficients: Vec<Vec<[f64; 2]>>,
+}
+
+/// Moments of each inner integral.
+struct Moments {
+    key: Key,
+    /// How many each has.
+    terms: usize,
+    /// In the order of the integrals; NaN where the lobe is a delta.
+    values: Vec<f64>,
+}
+
+/// What moments depend on.
+#[derive(PartialEq)]
+struct Key {
+    parts: [&'static str; 2],
+    fixed: Vec<Fixed>,
+    /// Without what the Fresnel term reads.
+    settings: Vec<Setting>,
+    tolerance: f64,
+    degree: usize,
+}
+
+impl SeriesIntegrals {
+    /// The integrals of a lobe over listed directions, where they are worth it.
+    pub fn new<E: Send>(
+        rule: &DirectionRule,
+        lobe: &Lobe,
+        tick: &(impl Fn(f64) -> Result<(), E> + Sync),
+    ) -> Result<Option<Self>, E> {
+        let Some(terms) = lobe.model().microfacet.filter(|_| !rule.has_factors()) else { return Ok(None) };
+        let (Some(series), Some(masking)) = (&terms.series, &terms.masking) else { return Ok(None) };
+        let degree = |share: f64| {
+            let degrees = rule.settings.iter().map(|s| (series.degree)(s, share * rule.tolerance));
+            let most = degrees.max().unwrap_or(0).max(1);
+            most.next_multiple_of(STEP)
+        };
+        // A step more than the degree of the rule serves most films, which then share moments.
+        let (degree, series_degree) = (degree(1.0), degree(SERIES_SHARE).max(degree(1.0) + STEP));
+        if series_degree > MOST {
+            return Ok(None);
+        }
+        let settings = rule.settings.iter().map(|s| Setting { parameters: without_fresnel(s), ..*s });
+        let key = Key {
+            parts: [terms.ndf.name, masking.name],
+            fixed: rule.fixed.clone(),
+            settings: settings.collect(),
+            tolerance: rule.tolerance,
+            degree,
+        };
+        let moments = match kept(&key, series_degree + 1) {
+            Some(moments) => moments,
+            None => keep(Moments::new(key, rule, series, series_degree + 1, tick)?),
+        };
+        let coefficients = rule.settings.iter().map(|s| coefficients(series, s, series_degree)).collect();
+        Ok(Some(Self { moments, coefficients }))
+    }
+
+    /// The inner integral of an index; `None` where the lobe is a delta.
+    pub fn integral(&self, index: usize) -> Option<[f64; 2]> {
+        let Moments { terms, values, key } = &*self.moments;
+        let moments = &values[index * terms..][..*terms];
+        let mut sum = [0.0; 2];
+        for (moment, [a, b]) in moments.iter().zip(&self.coefficients[index / key.fixed.len()]) {
+            sum = [sum[0] + moment * a, sum[1] + moment * b];
+        }
+        // F is not negative; what rounds may be.
+        (!moments[0].is_nan()).then(|| sum.map(|x| x.max(0.0)))
+    }
+}
+
+impl Moments {
+    fn new<E: Send>(
+        key: Key,
+        rule: &DirectionRule,
+        series: &FresnelSeries,
+        terms: usize,
+        tick: &(impl Fn(f64) -> Result<(), E> + Sync),
+    ) -> Result<Self, E> {
+        let count = rule.settings.len() * rule.fixed.len();
+        let moments = |index: usize| {
+            tick(1.0 / count as f64)?;
+            let by_degree =
+                |fixed: &Fixed, s: &Setting| (series.samples)(fixed, s, rule.tolerance, key.degree);
+            Ok(match rule.integral_by(index, &by_degree) {
+                DirectionSum::Limit(_) => vec![f64::NAN; terms],
+                DirectionSum::Samples(samples) => {
+                    let setting = &rule.settings[index / rule.fixed.len()];
+                    moments(&samples, |sample| (series.facet)(&sample.pair, &sample.azimuth, setting), terms)
+                }
+            })
+        };
+        let values = (0..count).into_par_iter().map(moments).collect::<Result<Vec<_>, E>>()?.concat();
+        Ok(Self { key, terms, values })
+    }
+}
+
+/// Σ w s Tₖ(2c − 1) over samples of weight w, `facet` being (s, c).
+fn moments(samples: &[Sample], facet: impl Fn(&Sample) -> [f64; 2], terms: usize) -> Vec<f64> {
+    /// Samples that stay in the nearest cache.
+    const BLOCK: usize = 64;
+    let mut sums = vec![0.0; terms];
+    for samples in samples.chunks(BLOCK) {
+        // w s Tₖ and w s Tₖ₋₁, which T₋₁ = T₁ begins.
+        let [mut t, mut now, mut before] = [[0.0; BLOCK]; 3];
+        for (k, sample) in samples.iter().enumerate() {
+            let [s, c] = facet(sample);
+            t[k] = 2.0 * c - 1.0;
+            now[k] = sample.weight * s;
+            before[k] = now[k] * t[k];
+        }
+        for sum in &mut sums {
+            *sum += now.iter().sum::<f64>();
+            for k in 0..BLOCK {
+                let next = 2.0 * t[k] * now[k] - before[k];
+                before[k] = now[k];
+                now[k] = next;
+            }
+        }
+    }
+    sums
+}
+
+/// The coefficients of F in Tₖ(2c − 1), from its values at the zeros of a polynomial of twice the degree: c = cos²(ψ/2).
+fn coefficients(series: &FresnelSeries, s: &Setting, degree: usize) -> Vec<[f64; 2]> {
+    let count = 2 * (degree + 1);
+    let psi = |j: usize| PI * (j as f64 + 0.5) / count as f64;
+    let values: Vec<_> = (0..count)
+        .map(|j| {
+            let (sin, cos) = (0.5 * psi(j)).sin_cos();
+            (series.fresnel)(cos * cos, sin * sin, s)
+        })
+        .collect();
+    let coefficient = |k: usize| {
+        let share = if k == 0 { 1.0 } else { 2.0 } / count as f64;
+        let terms = values.iter().enumerate().map(|(j, f)| f.map(|f| share * f * (k as f64 * psi(j)).cos()));
+        terms.fold([0.0; 2], |[a, b], [more_a, more_b]| [a + more_a, b + more_b])
+    };
+    (0..=degree).map(coefficient).collect()
+}
+
+fn without_fresnel(s: &Setting) -> [f64; 8] {
+    let mut parameters = s.parameters;
+    parameters[4..].fill(0.0);
+    parameters
+}
+
+/// The moments of the last tables, the latest last.
+static LAST: Mutex<Vec<Arc<Moments>>> = Mutex::new(Vec::new());
+
+fn kept(key: &Key, terms: usize) -> Option<Arc<Moments>> {
+    let last = LAST.lock().unwrap_or_else(PoisonError::into_inner);
+    last.iter().find(|moments| moments.terms >= terms && moments.key == *key).cloned()
+}
+
+fn keep(moments: Moments) -> Arc<Moments> {
+    let moments = Arc::new(moments);
+    let mut last = LAST.lock().unwrap_or_else(PoisonError::into_inner);
+    last.push(moments.clone());
+    let size = |last: &[Arc<Moments>]| last.iter().map(|moments| moments.values.len()).sum::<usize>();
+    while size(&last) > KEPT {
+        last.remove(0);
+    }
+    moments
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrate::direction_rule::DirectionSource;
+    use crate::model::{self, Integral};
+    use std::convert::Infallible;
+
+    /// Moments make the sum over the lobe's own directions, within the tolerance: of films that share them, and at a delta.
+    #[test]
+    fn moments_make_the_lobe_s_own_integral() {
+        let model = model::find("ggx-anisotropic-smith-correlated-thin-film").unwrap();
+        let Integral::Mapped(map) = model.integral else { panic!("{} has a kernel", model.name) };
+        let fixed = [[1.0, 0.0], [0.7, 0.3], [0.1, 1.2], [1e-3, 0.8]];
+        let fixed = fixed.map(|[mu, phi]| Fixed { mu, phi, factored: false, kinks: Vec::new() }).to_vec();
+        for tolerance in [1e-3, 1e-5] {
+            for [f0, channel] in [[0.04, 0.0], [0.04, 2.0], [0.8, 1.0]] {
+                let mut lobe = Lobe::new(model, Some(0.5), vec![[1.0, 0.0]]).unwrap();
+                for (name, value) in [("aspect", 4.0), ("f0", f0), ("channel", channel)] {
+                    lobe.set(name, value).unwrap();
+                }
+                let settings = lobe.settings(&[0.0, 0.1, 0.6]);
+                let rule = DirectionRule::new(DirectionSource::Map(map), fixed.clone(), settings, tolerance);
+                let series =
+                    SeriesIntegrals::new(&rule, &lobe, &|_| Ok::<_, Infallible>(())).unwrap().unwrap();
+                for index in 0..12 {
+                    let own = match rule.integral(index) {
+                        DirectionSum::Limit(_) => None,
+                        DirectionSum::Samples(samples) => Some(samples.iter().fold(0.0, |sum, sample| {
+                            let s = &rule.settings[index / 4];
+                            sum + sample.weight * (model.lobe)(&sample.pair, &sample.azimuth, s)[0]
+                        })),
+                    };
+                    let shared = series.integral(index).map(|[a, _]| a);
+                    assert_eq!(shared.is_some(), index >= 4);
+                    let off = own.zip(shared).map_or(0.0, |(own, shared)| (own - shared).abs());
+                    assert!(off <= tolerance, "{off:e} at {index} of {f0}, {channel} for {tolerance:e}");
+                }
+            }
+        }
+    }
+}
