@@ -201,6 +201,7 @@ mod tests {
     use crate::integrate::direction_rule::DirectionSource;
     use crate::model::{self, Integral};
     use std::convert::Infallible;
+    use std::f64::consts::FRAC_PI_2;
 
     /// Moments make the sum over the lobe's own directions, within the tolerance: of films that share them, and at a delta.
     #[test]
@@ -234,5 +235,49 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// A tolerance is kept by few nodes: against a rule that has converged, over films, bases and shapes.
+    #[test]
+    fn tolerances_are_kept() {
+        let model = model::find("ggx-anisotropic-smith-correlated-thin-film").unwrap();
+        let Integral::Mapped(map) = model.integral else { panic!("{} has a kernel", model.name) };
+        let golden = |k: usize, share: f64| (0.5 + k as f64 * share).fract();
+        let cases = if crate::base::is_thorough() { 400 } else { 40 };
+        let worst = (0..cases).into_par_iter().map(|k| {
+            let mut lobe = Lobe::new(model, Some(0.5), vec![[1.0, 0.0]]).unwrap();
+            let of = |share| golden(k, share);
+            for (name, value) in [
+                ("aspect", 100f64.powf(2.0 * of(0.7549) - 1.0)),
+                ("thickness", 800.0 * of(0.5698)),
+                ("film_eta", 1.1 + of(0.8192)),
+                ("f0", of(0.6710)),
+                ("channel", (3.0 * of(0.5497)).floor()),
+            ] {
+                lobe.set(name, value).unwrap();
+            }
+            let (mu, phi) = (2f64.powf(-12.0 * of(0.4503).powi(2)), FRAC_PI_2 * of(0.3717));
+            let fixed = vec![Fixed { mu, phi, factored: false, kinks: Vec::new() }];
+            let settings = lobe.settings(&[2f64.powf(-10.0 * of(0.3069).powi(2))]);
+            let rule = |tolerance: f64| {
+                DirectionRule::new(DirectionSource::Map(map), fixed.clone(), settings.clone(), tolerance)
+            };
+            let own = |tolerance: f64| match rule(tolerance).integral(0) {
+                DirectionSum::Limit(limit) => limit[0],
+                DirectionSum::Samples(samples) => samples
+                    .iter()
+                    .map(|s| s.weight * (model.lobe)(&s.pair, &s.azimuth, &settings[0])[0])
+                    .sum(),
+            };
+            let exact = own(1e-8);
+            [1e-2, 1e-3, 1e-4, 1e-5, 1e-6].map(|tolerance| {
+                let rule = rule(tolerance);
+                let series = SeriesIntegrals::new(&rule, &lobe, &|_| Ok::<_, Infallible>(())).unwrap();
+                series.map_or(0.0, |series| (series.integral(0).unwrap()[0] - exact).abs() / tolerance)
+            })
+        });
+        let worst = worst.reduce(|| [0.0; 5], |a, b| std::array::from_fn(|d| f64::max(a[d], b[d])));
+        println!("{worst:.3?}");
+        assert!(worst.iter().all(|&share| share <= 1.0), "{worst:?} of 1e-2 … 1e-6");
     }
 }

@@ -298,7 +298,7 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
             None => |_, _| MEAN_NODES_UNKNOWN,
         },
         series: match (Self::COUNTS, F::AS_POLYNOMIAL) {
-            (Some(_), Some(polynomial)) => Some(FresnelSeries {
+            (Some(_), Some(polynomial)) if N::AXES.is_some() => Some(FresnelSeries {
                 degree: polynomial.degree,
                 fresnel: F::fresnel,
                 facet: |p, a, s| {
