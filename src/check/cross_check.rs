@@ -43,7 +43,7 @@ pub(crate) struct Comparison<'a> {
 
 /// The texels of other tables that a mean over all directions of an anisotropic lobe counts for: its reference integrates over
 /// four angles.
-const MEAN_COST: usize = 64;
+const MEAN_COST: usize = 128;
 
 /// Whether a table has means over all directions of an anisotropic lobe.
 pub(super) fn is_anisotropic_mean(table: &TablePlan) -> bool {

@@ -646,7 +646,8 @@ mod tests {
     #[test]
     fn the_error_model_holds_for_every_combination() {
         let mut failed = Vec::new();
-        for model in MICROFACETS.iter() {
+        let thorough = crate::base::is_thorough();
+        for (place, model) in MICROFACETS.iter().enumerate() {
             let Integral::Slopes(slopes) = model.integral else { continue };
             let rule = |mu: f64, s: &Setting, tolerance: f64, counts: [SlopeCounts; 2]| {
                 let map = slopes.map(tolerance);
@@ -678,9 +679,10 @@ mod tests {
             let telling =
                 model.terms().iter().filter(|(_, there, own)| own.name != there[0].name).count() < 2;
             let count = match (film, telling) {
+                _ if !telling && !thorough && place % 8 != 0 => continue,
                 (true, true) => 5,
                 (true, false) => 1,
-                (false, true) => 120 / extremes.len().min(6),
+                (false, true) => (if thorough { 120 } else { 40 }) / extremes.len().min(6),
                 (false, false) => 4,
             };
             let worst: Vec<[f64; 9]> = (0..count * extremes.len())

@@ -86,12 +86,13 @@ mod tests {
         const STRICTEST: u32 = 65_535;
         let mut failed = Vec::new();
         for model in model::all().filter(|model| !matches!(model.integral, Integral::Unbounded(_))) {
-            for tolerance in (1..=10).map(|decade| 10f64.powi(-decade)) {
+            let (decades, count) = if crate::base::is_thorough() { (1..=10, 96) } else { (6..=10, 24) };
+            for tolerance in decades.map(|decade| 10f64.powi(-decade)) {
                 for quantity in [&RHO_DH, &RHO_HH] {
-                    let rough = model.shape.map(|_| Axis::natural(Variable::Roughness, 96).unwrap());
+                    let rough = model.shape.map(|_| Axis::natural(Variable::Roughness, count).unwrap());
                     let about = quantity.variables(model.is_anisotropic());
                     let axis = |&variable: &Variable| {
-                        let count = if variable == Variable::PhiI { 3 } else { 96 };
+                        let count = if variable == Variable::PhiI { 3 } else { count };
                         Axis::natural(variable, count).unwrap()
                     };
                     let axes = rough.into_iter().chain(about.iter().map(axis)).collect();

@@ -310,7 +310,8 @@ mod tests {
         {
             let model = model::find(name).unwrap();
             let Integral::Mapped(map) = model.integral else { unreachable!() };
-            for (alpha, gamma) in [(1e-3, 1.0), (0.01, 1.0), (0.2, 1.0), (0.01, 10.0)] {
+            let settings = [(1e-3, 1.0), (0.01, 1.0), (0.2, 1.0), (0.01, 10.0)];
+            for &(alpha, gamma) in if crate::base::is_thorough() { &settings[..] } else { &settings[2..] } {
                 let s = setting(alpha, gamma);
                 let sum_of = |nodes: Vec<Node>, finer: f64| {
                     let at = |n: &Node| {
