@@ -1,11 +1,9 @@
 //! Evaluates the integrals of a lobe in f64 on the host, on all cores.
 
 use super::chebyshev::Matrix;
-use super::direction_rule::DirectionSum;
 use super::fresnel_series::SeriesIntegrals;
 use super::rule_set::{InnerRule, RuleSet};
 use crate::model::ALPHA_MIN_INTEGRAL;
-use crate::model::directions::Sample;
 use crate::model::lobe::Lobe;
 use rayon::prelude::*;
 
@@ -85,14 +83,7 @@ fn integrate(rules: &RuleSet, inner: &InnerRule, lobe: &Lobe, row: usize, k: usi
                 add(pairs[k].weight * azimuth.weight, (lobe.model().lobe)(&pairs[k], azimuth, setting));
             }
         }
-        InnerRule::Directions(rule) => match rule.integral(row * rule.fixed.len() + k) {
-            DirectionSum::Limit(limit) => return limit,
-            DirectionSum::Samples(samples) => {
-                for Sample { pair, azimuth, weight } in &samples {
-                    add(*weight, (lobe.model().lobe)(pair, azimuth, setting));
-                }
-            }
-        },
+        InnerRule::Directions(rule) => return rule.sum(row * rule.fixed.len() + k, lobe.model()),
         InnerRule::ClosedForm { directional, mus } => return directional(mus[k], setting),
     }
     sum

@@ -4,11 +4,11 @@
 //! Mₖ = ∫ D G2 / (4 μi μe) Tₖ(2c − 1) cos θe dωe. The moments of the last tables are kept: the three channels of a film, and
 //! films on different bases, are one integration and some products.
 
-use crate::integrate::direction_rule::{DirectionRule, DirectionSum};
-use crate::model::FresnelSeries;
-use crate::model::directions::{Fixed, Sample};
+use crate::integrate::direction_rule::{At, DirectionRule};
+use crate::model::directions::Fixed;
 use crate::model::lobe::Lobe;
 use crate::model::parameters::Setting;
+use crate::model::{Facet, FacetSum, Model};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -60,9 +60,10 @@ impl SeriesIntegrals {
         tick: &(impl Fn(f64) -> Result<(), E> + Sync),
     ) -> Result<Option<Self>, E> {
         let Some(terms) = lobe.model().microfacet.filter(|_| !rule.has_factors()) else { return Ok(None) };
-        let (Some(series), Some(masking)) = (&terms.series, &terms.masking) else { return Ok(None) };
+        let (Some(facets), Some(masking)) = (&terms.facets, &terms.masking) else { return Ok(None) };
+        let Some(degree_of) = facets.degree else { return Ok(None) };
         let degree = |share: f64| {
-            let degrees = rule.settings.iter().map(|s| (series.degree)(s, share * rule.tolerance));
+            let degrees = rule.settings.iter().map(|s| degree_of(s, share * rule.tolerance));
             let most = degrees.max().unwrap_or(0).max(1);
             most.next_multiple_of(STEP)
         };
@@ -81,9 +82,9 @@ impl SeriesIntegrals {
         };
         let moments = match kept(&key, series_degree + 1) {
             Some(moments) => moments,
-            None => keep(Moments::new(key, rule, series, series_degree + 1, tick)?),
+            None => keep(Moments::new(key, rule, lobe.model(), series_degree + 1, tick)?),
         };
-        let coefficients = rule.settings.iter().map(|s| coefficients(series, s, series_degree)).collect();
+        let coefficients = rule.settings.iter().map(|s| coefficients(facets, s, series_degree)).collect();
         Ok(Some(Self { moments, coefficients }))
     }
 
@@ -104,43 +105,60 @@ impl Moments {
     fn new<E: Send>(
         key: Key,
         rule: &DirectionRule,
-        series: &FresnelSeries,
+        model: &Model,
         terms: usize,
         tick: &(impl Fn(f64) -> Result<(), E> + Sync),
     ) -> Result<Self, E> {
         let count = rule.settings.len() * rule.fixed.len();
         let moments = |index: usize| {
             tick(1.0 / count as f64)?;
-            let by_degree =
-                |fixed: &Fixed, s: &Setting| (series.samples)(fixed, s, rule.tolerance, key.degree);
-            Ok(match rule.integral_by(index, &by_degree) {
-                DirectionSum::Limit(_) => vec![f64::NAN; terms],
-                DirectionSum::Samples(samples) => {
-                    let setting = &rule.settings[index / rule.fixed.len()];
-                    moments(&samples, |sample| (series.facet)(&sample.pair, &sample.azimuth, setting), terms)
-                }
-            })
+            let Some(facets) = rule.facets(index, model) else { return Ok(vec![f64::NAN; terms]) };
+            let At { setting, fixed, .. } = rule.at(index);
+            let mut sum = MomentSum::new(terms);
+            (facets.visit)(&fixed, &setting, rule.tolerance, Some(key.degree), &mut |facet| sum.add(&facet));
+            Ok(sum.finish())
         };
         let values = (0..count).into_par_iter().map(moments).collect::<Result<Vec<_>, E>>()?.concat();
         Ok(Self { key, terms, values })
     }
 }
 
-/// Σ w s Tₖ(2c − 1) over samples of weight w, `facet` being (s, c).
-fn moments(samples: &[Sample], facet: impl Fn(&Sample) -> [f64; 2], terms: usize) -> Vec<f64> {
-    /// Samples that stay in the nearest cache.
-    const BLOCK: usize = 64;
-    let mut sums = vec![0.0; terms];
-    for samples in samples.chunks(BLOCK) {
-        // w s Tₖ and w s Tₖ₋₁, which T₋₁ = T₁ begins.
-        let [mut t, mut now, mut before] = [[0.0; BLOCK]; 3];
-        for (k, sample) in samples.iter().enumerate() {
-            let [s, c] = facet(sample);
-            t[k] = 2.0 * c - 1.0;
-            now[k] = sample.weight * s;
-            before[k] = now[k] * t[k];
+/// Facets that stay in the nearest cache.
+const BLOCK: usize = 64;
+
+/// Σ w Tₖ(2c − 1) over facets of weight w.
+struct MomentSum {
+    sums: Vec<f64>,
+    /// 2c − 1 and w of facets that are not summed yet.
+    block: [[f64; BLOCK]; 2],
+    count: usize,
+}
+
+impl MomentSum {
+    fn new(terms: usize) -> Self {
+        Self { sums: vec![0.0; terms], block: [[0.0; BLOCK]; 2], count: 0 }
+    }
+
+    fn add(&mut self, &Facet { c, weight, .. }: &Facet) {
+        self.block[0][self.count] = 2.0 * c - 1.0;
+        self.block[1][self.count] = weight;
+        self.count += 1;
+        if self.count == BLOCK {
+            self.sum_block();
         }
-        for sum in &mut sums {
+    }
+
+    fn finish(mut self) -> Vec<f64> {
+        self.block[1][self.count..].fill(0.0);
+        self.sum_block();
+        self.sums
+    }
+
+    fn sum_block(&mut self) {
+        // w Tₖ and w Tₖ₋₁, which T₋₁ = T₁ begins.
+        let [t, mut now] = self.block;
+        let mut before: [f64; BLOCK] = std::array::from_fn(|k| now[k] * t[k]);
+        for sum in &mut self.sums {
             *sum += now.iter().sum::<f64>();
             for k in 0..BLOCK {
                 let next = 2.0 * t[k] * now[k] - before[k];
@@ -148,18 +166,18 @@ fn moments(samples: &[Sample], facet: impl Fn(&Sample) -> [f64; 2], terms: usize
                 now[k] = next;
             }
         }
+        self.count = 0;
     }
-    sums
 }
 
 /// The coefficients of F in Tₖ(2c − 1), from its values at the zeros of a polynomial of twice the degree: c = cos²(ψ/2).
-fn coefficients(series: &FresnelSeries, s: &Setting, degree: usize) -> Vec<[f64; 2]> {
+fn coefficients(facets: &FacetSum, s: &Setting, degree: usize) -> Vec<[f64; 2]> {
     let count = 2 * (degree + 1);
     let psi = |j: usize| PI * (j as f64 + 0.5) / count as f64;
     let values: Vec<_> = (0..count)
         .map(|j| {
             let (sin, cos) = (0.5 * psi(j)).sin_cos();
-            (series.fresnel)(cos * cos, sin * sin, s)
+            (facets.fresnel)(cos * cos, sin * sin, s)
         })
         .collect();
     let coefficient = |k: usize| {
@@ -198,7 +216,7 @@ fn keep(moments: Moments) -> Arc<Moments> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::integrate::direction_rule::DirectionSource;
+    use crate::integrate::direction_rule::{DirectionSource, DirectionSum};
     use crate::model::{self, Integral};
     use std::convert::Infallible;
     use std::f64::consts::FRAC_PI_2;

@@ -15,6 +15,7 @@ use crate::model::fresnel::none::Constant;
 use crate::model::fresnel::schlick::Schlick;
 use crate::model::fresnel::thin_film::ThinFilm;
 use crate::model::fresnel::{self, Fresnel, MEAN_NODES_UNKNOWN};
+use crate::model::half_vector::stretched::Facet;
 use crate::model::half_vector::{self, Kinks, adaptive, stretched};
 use crate::model::masking::ashikhmin_neubelt::AshikhminNeubelt;
 use crate::model::masking::disney_clearcoat::DisneyClearcoat;
@@ -71,21 +72,19 @@ pub struct Microfacet {
     pub(crate) seam: Option<f64>,
     /// How many more nodes in μ its mean over directions takes than Schlick's, at a tolerance.
     pub(crate) mean_nodes: fn(&Setting, f64) -> usize,
-    /// What integrals of lobes share that differ in F alone, where that pays.
-    pub(crate) series: Option<FresnelSeries>,
+    /// Its integrals as sums over facets, where that is quicker than over directions.
+    pub(crate) facets: Option<FacetSum>,
 }
 
-/// A lobe as F times the rest of it, F being a polynomial of c = ωi·ωm within a tolerance.
+/// Integrals of a lobe as sums over its facets, each F times the rest of the lobe.
 #[derive(Debug)]
-pub(crate) struct FresnelSeries {
-    /// The polynomial's degree.
-    pub degree: fn(&Setting, tolerance: f64) -> usize,
+pub(crate) struct FacetSum {
+    /// Visits the facets that meet a tolerance; or those that integrate polynomials of a degree in F's place.
+    pub visit: fn(&directions::Fixed, &Setting, tolerance: f64, Option<usize>, &mut dyn FnMut(Facet)),
     /// F for c and 1 − c.
     pub fresnel: fn(c: f64, x: f64, &Setting) -> [f64; 2],
-    /// D G2 / (4 μi μe), and c.
-    pub facet: fn(&Pair, &Azimuth, &Setting) -> [f64; 2],
-    /// Directions that integrate D G2 / (4 μi μe) times polynomials of a degree.
-    pub samples: fn(&directions::Fixed, &Setting, tolerance: f64, degree: usize) -> Vec<directions::Sample>,
+    /// The degree of the polynomial of c that F is within a tolerance, where F costs much.
+    pub degree: Option<fn(&Setting, tolerance: f64) -> usize>,
 }
 
 /// The parts there are: the default is the first of its kind, and an entry here is all that a new one takes.
@@ -297,15 +296,14 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
             Some(counts) => counts.mean_nodes,
             None => |_, _| MEAN_NODES_UNKNOWN,
         },
-        series: match (Self::COUNTS, F::AS_POLYNOMIAL) {
-            (Some(_), Some(polynomial)) if N::AXES.is_some() => Some(FresnelSeries {
-                degree: polynomial.degree,
+        facets: match (Self::COUNTS, F::AS_POLYNOMIAL) {
+            (Some(_), polynomial) if N::AXES.is_some() && M::OF_NORMAL.is_none() => Some(FacetSum {
+                visit: Self::visit,
                 fresnel: F::fresnel,
-                facet: |p, a, s| {
-                    let h = Half::new(p, a);
-                    [Facets::<N, M>::lobe(p, a, &h, s), h.c]
+                degree: match polynomial {
+                    Some(polynomial) => Some(polynomial.degree),
+                    None => None,
                 },
-                samples: Self::samples_of_degree,
             }),
             _ => None,
         },
@@ -337,7 +335,12 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
     const MAP: directions::Map = match Self::COUNTS {
         Some((rule, ..)) => directions::Map {
             samples: |fixed, s, tolerance| {
-                Self::samples(fixed, s, Self::counts(fixed.mu, s, tolerance), tolerance)
+                let counts = Self::counts(fixed.mu, s, tolerance);
+                match Self::DIRECTIONS {
+                    _ if N::AXES.is_some() => stretched::samples::<N, M>(fixed, s, counts, tolerance),
+                    Some(directions) => (directions.samples)(fixed, s, counts, tolerance, M::OF_NORMAL),
+                    None => half_vector::samples::<N, M>(fixed, s, counts, tolerance),
+                }
             },
             most: |s, tolerance| {
                 let panels = if N::AXES.is_some() { stretched::PANELS } else { 1 };
@@ -405,31 +408,21 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         }
     }
 
-    /// Directions by so many nodes.
-    fn samples(
-        fixed: &directions::Fixed,
-        s: &Setting,
-        counts: [SlopeCounts; 2],
-        tolerance: f64,
-    ) -> Vec<directions::Sample> {
-        match Self::DIRECTIONS {
-            _ if N::AXES.is_some() => stretched::samples::<N, M>(fixed, s, counts, tolerance),
-            Some(directions) => (directions.samples)(fixed, s, counts, tolerance, M::OF_NORMAL),
-            None => half_vector::samples::<N, M>(fixed, s, counts, tolerance),
-        }
-    }
-
-    fn samples_of_degree(
+    fn visit(
         fixed: &directions::Fixed,
         s: &Setting,
         tolerance: f64,
-        degree: usize,
-    ) -> Vec<directions::Sample> {
-        let (Some((rule, of_masking, _)), Some(polynomial)) = (Self::COUNTS, F::AS_POLYNOMIAL) else {
-            return Vec::new();
+        degree: Option<usize>,
+        visit: &mut dyn FnMut(Facet),
+    ) {
+        let Some((rule, of_masking, _)) = Self::COUNTS else { return };
+        let counts = match (degree, F::AS_POLYNOMIAL) {
+            (Some(degree), Some(polynomial)) => {
+                (polynomial.counts)(of_masking((rule.counts)(fixed.mu, s, tolerance), tolerance), degree)
+            }
+            _ => Self::counts(fixed.mu, s, tolerance),
         };
-        let schlick = of_masking((rule.counts)(fixed.mu, s, tolerance), tolerance);
-        Self::samples(fixed, s, (polynomial.counts)(schlick, degree), tolerance)
+        stretched::facets::<N, M>(fixed, s, counts, tolerance, visit);
     }
 
     /// f μi / p of a normal that was drawn.

@@ -51,7 +51,7 @@ impl<F: Fresnel> MirrorOf<F> {
         metals: F::METALS,
         refused: F::refused,
         is_counted: true,
-        series: None,
+        facets: None,
         mean_nodes: match F::COUNTS {
             Some(counts) => counts.mean_nodes,
             None => |_, _| MEAN_NODES_UNKNOWN,

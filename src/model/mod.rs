@@ -23,7 +23,8 @@ pub(crate) mod slope_azimuths;
 #[cfg(test)]
 pub(crate) mod truth;
 
-pub(crate) use microfacet::FresnelSeries;
+pub(crate) use half_vector::stretched::Facet;
+pub(crate) use microfacet::FacetSum;
 
 pub use builder::{ModelBuilder, Twin};
 pub use fresnel::metals::{METALS, Metal};
