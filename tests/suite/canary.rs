@@ -13,7 +13,7 @@ use gonio::table::axis::Variable;
 use gonio::table::quantity::RHO_DH;
 use gonio::table::rule::Rule;
 use gonio::verify::user_shader::{UserFunction, UserShader};
-use gonio::verify::{ParameterRange, Subject, Symmetry};
+use gonio::verify::{self, ParameterRange, Subject, Symmetry, Verdict, VerifyOptions};
 
 fn opened() -> &'static Device {
     let Evaluator::Device(device) = device() else { unreachable!("common::device asserts it") };
@@ -32,6 +32,14 @@ fn shader(body: &str) -> UserShader<'static> {
     let parameters = ["x", "y"].map(|name| ParameterRange::new(name, -1e38, 1e38).unwrap()).to_vec();
     UserShader::new(opened(), function, parameters, false, Symmetry { isotropic: true, bilateral: true })
         .unwrap()
+}
+
+/// A shader without parameters to search.
+fn narrow(body: &str) -> UserShader<'static> {
+    let source = format!("fn f(wi: vec3f, wo: vec3f) -> f32 {{ {body} }}");
+    let function = UserFunction::parse("canary.wgsl", source, "f").unwrap();
+    let symmetry = Symmetry { isotropic: true, bilateral: true };
+    UserShader::new(opened(), function, Vec::new(), false, symmetry).unwrap()
 }
 
 /// What a body returns for x and y, alike for every pair of directions.
@@ -133,16 +141,42 @@ fn an_embedded_baker_keeps_to_what_every_driver_runs() {
     assert!(why.contains("34817 turns") && why.contains("only 32000 are known"), "{why}");
 }
 
-/// A user's loops cannot be counted beforehand: where the driver stops loops, the report says so.
+/// A user's loops cannot be counted beforehand. They count themselves: where a driver may have stopped them, nothing is
+/// said to be kept.
 #[test]
-fn a_shader_with_loops_is_told_of() {
-    let looped = "var f = 0.0; for (var k = 0.0; k < x; k += 1.0) { f += y; } return f;";
-    assert!(shader("return x * y;").notes().is_empty());
-    let notes = shader(looped).notes();
-    match canary().loop_turns {
-        Some(turns) => assert!(notes[0].contains(&turns.to_string()), "{notes:?}"),
-        None => assert!(notes.is_empty(), "{notes:?}"),
+fn a_shader_whose_loops_are_stopped_is_not_checked() {
+    let verdicts = |turns: u32| {
+        let body =
+            format!("var f = 0.0; for (var k = 0u; k < {turns}u; k++) {{ f += 0.1 / {turns}.0; }} return f;");
+        let options = VerifyOptions { budget: 1000, ..VerifyOptions::default() };
+        let mut subject = narrow(&body);
+        let report = verify::check(&mut subject, &options, &Unobserved).unwrap();
+        report.findings.iter().map(|finding| finding.verdict).collect::<Vec<_>>()
+    };
+    assert!(verdicts(100).iter().all(|&verdict| verdict == Verdict::Kept));
+    let stopped = if canary().loop_turns.is_some() { Verdict::Unchecked } else { Verdict::Kept };
+    assert_eq!(verdicts(100_000), [stopped; 6]);
+}
+
+/// What no compiler nests or inlines is refused before a compiler sees it, in no time.
+#[test]
+fn a_shader_that_no_driver_compiles_is_refused() {
+    let parse = |source: String| UserFunction::parse("large.wgsl", source, "brdf").unwrap_err().to_string();
+    let body = |value: String| format!("fn brdf(wi: vec3f, wo: vec3f) -> f32 {{ return {value}; }}");
+    let sum = parse(body(vec!["wi.z"; 100_000].join(" + ")));
+    assert!(sum.starts_with("large.wgsl: an expression nests 199999 operators"), "{sum}");
+    let mut calls = String::from("fn f0(x: f32) -> f32 { return x; }\n");
+    for k in 0..40 {
+        calls += &format!("fn f{}(x: f32) -> f32 {{ return f{k}(x) + f{k}(x + 1.0); }}\n", k + 1);
     }
+    let calls = parse(calls + &body("f40(wi.z)".into()));
+    assert!(calls.contains("fn brdf has ") && calls.contains("operations"), "{calls}");
+    let branches =
+        parse(body(String::from("0.0; ") + &"if wi.z > 0.5 { } else ".repeat(5000) + "{ } return 0.0"));
+    assert!(branches.contains("5000 branches"), "{branches}");
+    // Deeper than the stack of this thread would hold.
+    let deep = body(vec!["wi.z"; 30_000].join(" + "));
+    assert!(UserFunction::parse("deep.wgsl", deep, "brdf").is_ok());
 }
 
 #[cfg(feature = "cli")]
