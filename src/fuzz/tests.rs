@@ -1,13 +1,14 @@
 //! Mutated files, by a seeded chance. The long test runs each parser in a process of its own with 1 GiB of address space.
 
 use super::*;
+use crate::base::timings::Stopwatch;
 use std::env;
 use std::process::Command;
-use std::time::Instant;
 
 /// Says to the child which parser it is for.
 const PARSER: &str = "GONIO_FUZZ_PARSER";
-const KIB: u64 = 1 << 20;
+/// 1 GiB of address space, in KiB.
+const SPACE: u64 = 1 << 20;
 
 #[test]
 fn every_seed_is_read_and_all_are_small() {
@@ -43,13 +44,13 @@ fn ten_million_mutated_files_are_read_or_refused() {
     let only = env::var("GONIO_FUZZ").ok();
     let mut failed = Vec::new();
     for parser in PARSERS.iter().filter(|parser| only.as_ref().is_none_or(|only| only == parser.name)) {
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let test = "fuzz::tests::ten_million_mutated_files_are_read_or_refused";
-        let line = format!("ulimit -v {KIB}; exec \"$0\" {test} --exact --ignored --nocapture");
+        let line = format!("ulimit -v {SPACE}; exec \"$0\" {test} --exact --ignored --nocapture");
         let mut child = Command::new("sh");
         let child = child.args(["-c", &line]).arg(env::current_exe().unwrap()).env(PARSER, parser.name);
         let output = child.output().unwrap();
-        let (seconds, n) = (start.elapsed().as_secs_f64(), count());
+        let (seconds, n) = (start.seconds(), count());
         println!("{:7} {n} inputs, {:.0} a second: {}", parser.name, n as f64 / seconds, output.status);
         if !output.status.success() {
             let text = [output.stdout, output.stderr].concat();

@@ -10,6 +10,7 @@ use naga::{
     BinaryOperator, Block, Expression, Function, GlobalVariable, Handle, Literal, Module, Range, Span,
     Statement,
 };
+use std::panic::resume_unwind;
 use std::thread;
 
 /// Bytes of a file.
@@ -25,21 +26,28 @@ const OPERATIONS: u64 = 1 << 18;
 /// Invocations that a driver which stops loops may run in step; it counts the turns of all of them.
 const IN_STEP: u32 = 16;
 
-/// Runs what follows the nesting of a file, on a stack that is large enough for what [`check_text`] lets pass.
+/// Nesting that any stack holds.
+const SHALLOW: Nesting = Nesting { operators: 1 << 10, branches: 1 << 6 };
+
+/// Runs what follows the nesting of a text: where that is deep, on a stack that is large enough for what [`check_text`] lets
+/// pass.
 ///
 /// # Errors
 /// When the system has no room for the stack; and those of `work`.
-pub(super) fn with_stack<T: Send>(work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
+pub(super) fn with_stack<T: Send>(is_deep: bool, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
+    if !is_deep {
+        return work();
+    }
     thread::scope(|scope| {
         let compiler = thread::Builder::new().name("compiler".into()).stack_size(STACK);
         let compiler = compiler.spawn_scoped(scope, work);
         let compiler = compiler.map_err(|e| Error::Device(format!("no thread to compile WGSL on: {e}")))?;
-        compiler.join().unwrap_or_else(|_| Err(Error::Internal("the WGSL compiler panicked".into())))
+        compiler.join().unwrap_or_else(|panic| resume_unwind(panic))
     })
 }
 
-/// Refuses a text that is too large or too deeply nested to be compiled.
-pub(super) fn check_text(source: &str) -> Result<()> {
+/// Refuses a text that is too large or too deeply nested to be compiled. Returns whether it is deep.
+pub(super) fn check_text(source: &str) -> Result<bool> {
     if source.len() > LONGEST {
         let mib = LONGEST >> 20;
         return Err(Error::input(format!("it has more than {mib} MiB; give the BRDF a file of its own")));
@@ -55,7 +63,7 @@ pub(super) fn check_text(source: &str) -> Result<()> {
             "an expression nests {nesting} operators, and {NESTING} at most are compiled; split it over several statements"
         )));
     }
-    Ok(())
+    Ok(nesting > SHALLOW.operators || branches > SHALLOW.branches)
 }
 
 /// How deeply a text may nest.
@@ -271,16 +279,17 @@ mod tests {
 
     #[test]
     fn calls_are_counted_without_being_followed() {
-        let mut source = String::from("fn f0(x: f32) -> f32 { return x; }\n");
+        let mut source = String::from("fn tree0(x: f32) -> f32 { return x; }\n");
         for k in 1..=80 {
-            source += &format!("fn f{k}(x: f32) -> f32 {{ return f{}(x) + f{}(x); }}\n", k - 1, k - 1);
+            source +=
+                &format!("fn tree{k}(x: f32) -> f32 {{ return tree{}(x) + tree{}(x); }}\n", k - 1, k - 1);
         }
         let module = naga::front::wgsl::parse_str(&source).unwrap();
         let find =
             |name: &str| module.functions.iter().find(|(_, f)| f.name.as_deref() == Some(name)).unwrap().0;
-        assert!(!Inlined::new(&module, find("f8")).unwrap().loops);
+        assert!(!Inlined::new(&module, find("tree8")).unwrap().loops);
         let error = |name| Inlined::new(&module, find(name)).unwrap_err().to_string();
-        assert!(error("f40").contains("fn f40 has "), "{}", error("f40"));
-        assert!(error("f80").contains("2⁶⁴ or more"), "{}", error("f80"));
+        assert!(error("tree40").contains("fn tree40 has "), "{}", error("tree40"));
+        assert!(error("tree80").contains("2⁶⁴ or more"), "{}", error("tree80"));
     }
 }

@@ -27,6 +27,8 @@ pub struct UserFunction {
     channels: usize,
     /// Whether it, or what it calls, has a loop.
     loops: bool,
+    /// Whether it is nested deeper than the stack of any thread holds.
+    is_deep: bool,
     /// A group of bindings that the file leaves free.
     group: u32,
 }
@@ -46,11 +48,11 @@ impl UserFunction {
     /// its program could give it, such as a uniform or a texture.
     pub fn parse(file: impl Into<String>, source: impl Into<String>, entry: &str) -> Result<Self> {
         let (file, source) = (file.into(), source.into());
-        limits::check_text(&source).map_err(|error| error.at(&file))?;
-        limits::with_stack(|| Self::parse_deep(file, source, entry))
+        let is_deep = limits::check_text(&source).map_err(|error| error.at(&file))?;
+        limits::with_stack(is_deep, || Self::parse_text(file, source, entry, is_deep))
     }
 
-    fn parse_deep(file: String, source: String, entry: &str) -> Result<Self> {
+    fn parse_text(file: String, source: String, entry: &str, is_deep: bool) -> Result<Self> {
         let module = naga::front::wgsl::parse_str(&source).map_err(|error| {
             let mut message = error.emit_to_string_with_path(&source, &file);
             if source.lines().any(|line| line.trim_start().starts_with('#')) {
@@ -74,7 +76,7 @@ impl UserFunction {
         let group = (0..GROUPS).find(|&group| !is_bound(group)).ok_or_else(|| {
             Error::input(format!("{file}: all of the groups 0 to 3 have bindings; leave one for the check"))
         })?;
-        Ok(Self { file, source, entry: entry.into(), parameters, channels, loops, group })
+        Ok(Self { file, source, entry: entry.into(), parameters, channels, loops, is_deep, group })
     }
 
     /// The names of its f32 parameters, after the directions.
@@ -312,7 +314,7 @@ impl<'a> UserShader<'a> {
         let loop_turns = if function.loops { device.canary()?.loop_turns } else { None };
         let (wgpu, _) = device.wgpu();
         let pipeline = device.guarded(|| {
-            limits::with_stack(|| {
+            limits::with_stack(function.is_deep, || {
                 let source = wgpu::ShaderSource::Naga(Cow::Owned(function.compose(loop_turns)?));
                 let module = wgpu.create_shader_module(wgpu::ShaderModuleDescriptor {
                     label: Some(&function.entry),

@@ -23,8 +23,9 @@ const LICENCES: [&str; 13] = [
 ];
 
 /// Crates of which two versions are compiled, and why.
-const DUPLICATES: [(&str, &str); 3] = [
+const DUPLICATES: [(&str, &str); 4] = [
     ("hashbrown", "gpu-allocator takes 0.16, wgpu 0.17"),
+    ("jni-sys", "0.3 hands on to 0.4; for Android alone"),
     ("miniz_oxide", "exr and png take 0.8, flate2 0.9"),
     ("syn", "derive macros are moving from 2 to 3; none of it is in the program"),
 ];
