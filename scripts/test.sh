@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs the tests. Where no Vulkan driver is found on Debian or Ubuntu it installs software Vulkan first.
-# --long runs them on more drivers (scripts/drivers.sh), with all of their cases, and those that need the sample data in
-# GONIO_DATA.
+# --long runs them with all of their cases and on more drivers (scripts/drivers.sh), those that need the sample data in
+# GONIO_DATA, and the parsers on mutated files, by chance and under a fuzzer (scripts/fuzz.sh).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -26,6 +26,8 @@ if [ "${1:-}" = --long ]; then
     # Without GONIO_DATA they fail and say so.
     cargo test --release --test suite sample_data -- --ignored || status=1
     cargo test --release --test suite outputs::killed -- --ignored --nocapture || status=1
+    cargo test --release --lib fuzz:: -- --ignored --nocapture || status=1
+    scripts/fuzz.sh || status=1
     exit $status
 fi
 

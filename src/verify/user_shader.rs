@@ -8,10 +8,12 @@ use crate::base::angles::Angles;
 use crate::base::error::{Error, Result};
 use crate::base::half_angle::MU_MIN;
 use crate::base::timings::Stopwatch;
+use crate::verify::limits::{self, Inlined};
 use crate::verify::{ParameterRange, Subject, Symmetry};
 use naga::valid::{Capabilities, ModuleInfo, ShaderStages, ValidationFlags, Validator};
-use naga::{Block, Function, Module, ScalarKind, Statement, TypeInner, VectorSize};
+use naga::{Function, Module, ScalarKind, TypeInner, VectorSize};
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::sync::mpsc;
 use std::time::Duration;
 
@@ -25,6 +27,8 @@ pub struct UserFunction {
     channels: usize,
     /// Whether it, or what it calls, has a loop.
     loops: bool,
+    /// Whether it is nested deeper than the stack of any thread holds.
+    is_deep: bool,
     /// A group of bindings that the file leaves free.
     group: u32,
 }
@@ -44,6 +48,11 @@ impl UserFunction {
     /// its program could give it, such as a uniform or a texture.
     pub fn parse(file: impl Into<String>, source: impl Into<String>, entry: &str) -> Result<Self> {
         let (file, source) = (file.into(), source.into());
+        let is_deep = limits::check_text(&source).map_err(|error| error.at(&file))?;
+        limits::with_stack(is_deep, || Self::parse_text(file, source, entry, is_deep))
+    }
+
+    fn parse_text(file: String, source: String, entry: &str, is_deep: bool) -> Result<Self> {
         let module = naga::front::wgsl::parse_str(&source).map_err(|error| {
             let mut message = error.emit_to_string_with_path(&source, &file);
             if source.lines().any(|line| line.trim_start().starts_with('#')) {
@@ -59,13 +68,15 @@ impl UserFunction {
         })?;
         let (parameters, channels) = signature(&module, &info, entry).map_err(|error| error.at(&file))?;
         let named = |function: &Function| function.name.as_deref() == Some(entry);
-        let loops = module.functions.iter().any(|(_, f)| named(f) && has_loop(&module, &f.body));
+        let handle = module.functions.iter().find(|(_, function)| named(function)).map(|(handle, _)| handle);
+        let inlined = handle.map(|handle| Inlined::new(&module, handle)).transpose();
+        let loops = inlined.map_err(|error| error.at(&file))?.is_some_and(|inlined| inlined.loops);
         let is_bound =
             |group| module.global_variables.iter().any(|(_, v)| v.binding.is_some_and(|b| b.group == group));
         let group = (0..GROUPS).find(|&group| !is_bound(group)).ok_or_else(|| {
             Error::input(format!("{file}: all of the groups 0 to 3 have bindings; leave one for the check"))
         })?;
-        Ok(Self { file, source, entry: entry.into(), parameters, channels, loops, group })
+        Ok(Self { file, source, entry: entry.into(), parameters, channels, loops, is_deep, group })
     }
 
     /// The names of its f32 parameters, after the directions.
@@ -73,14 +84,18 @@ impl UserFunction {
         &self.parameters
     }
 
-    /// Composes the module that runs the function.
-    fn compose(&self) -> String {
+    /// Composes the module that runs the function, and counts the turns of its loops where a driver stops them.
+    ///
+    /// # Errors
+    /// When the function does not stand in the module as it does in its file.
+    pub(crate) fn compose(&self, loop_turns: Option<u32>) -> Result<Module> {
         // The prefix must not occur in the user's source.
         let mut prefix = String::from("gonio");
         while self.source.contains(&prefix) {
             prefix += "_x";
         }
         let Self { source, entry, group, channels, .. } = self;
+        let certain = loop_turns.map_or(u32::MAX, limits::certain_turns);
         let arguments: String = (0..self.parameters.len())
             .map(|k| format!(", {prefix}_job.setting[{}][{}]", k / 4, k % 4))
             .collect();
@@ -89,9 +104,10 @@ impl UserFunction {
             1 => format!("{prefix}_values[k] = f;"),
             _ => (0..3).map(|c| format!("{prefix}_values[3u * k + {c}u] = f[{c}]; ")).collect(),
         };
-        format!(
+        let text = format!(
             "{source}
-struct {prefix}_Job {{ setting: array<vec4<f32>, {vectors}>, count: u32 }}
+struct {prefix}_Job {{ setting: array<vec4<f32>, {vectors}>, count: u32, cut: u32 }}
+var<private> {prefix}_turns: u32;
 @group({group}) @binding(0) var<uniform> {prefix}_job: {prefix}_Job;
 @group({group}) @binding(1) var<storage, read> {prefix}_pairs: array<vec4<f32>>;
 @group({group}) @binding(2) var<storage, read_write> {prefix}_values: array<f32>;
@@ -101,16 +117,23 @@ fn {prefix}_main(@builtin(global_invocation_id) id: vec3<u32>) {{
     if (k >= {prefix}_job.count) {{ return; }}
     let f = {entry}({prefix}_pairs[2u * k].xyz, {prefix}_pairs[2u * k + 1u].xyz{arguments});
     {stores}
+    if ({prefix}_turns > {certain}u) {{ {prefix}_values[{channels}u * k] = bitcast<f32>({prefix}_job.cut); }}
 }}
 "
-        )
+        );
+        let module = naga::front::wgsl::parse_str(&text);
+        let mut module = module.map_err(|error| Error::input(error.emit_to_string(&text)))?;
+        if loop_turns.is_some() {
+            limits::count_turns(&mut module, &format!("{prefix}_turns"));
+        }
+        Ok(module)
     }
 
     /// Bytes of the uniform.
     fn job(&self, setting: &[f64], count: usize) -> Vec<u8> {
         let mut words: Vec<u32> = setting.iter().map(|&value| (value as f32).to_bits()).collect();
         words.resize(4 * self.parameters.len().div_ceil(4).max(1), 0);
-        words.extend([count as u32, 0, 0, 0]);
+        words.extend([count as u32, CUT, 0, 0]);
         bytemuck::cast_slice(&words).to_vec()
     }
 }
@@ -165,18 +188,6 @@ fn signature(module: &Module, info: &ModuleInfo, entry: &str) -> Result<(Vec<Str
         )));
     }
     Ok((parameters, channels))
-}
-
-/// Whether a block has a loop in it, or calls a function that has.
-fn has_loop(module: &Module, block: &Block) -> bool {
-    block.iter().any(|statement| match statement {
-        Statement::Loop { .. } => true,
-        Statement::Block(block) => has_loop(module, block),
-        Statement::If { accept, reject, .. } => has_loop(module, accept) || has_loop(module, reject),
-        Statement::Switch { cases, .. } => cases.iter().any(|case| has_loop(module, &case.body)),
-        Statement::Call { function, .. } => has_loop(module, &module.functions[*function].body),
-        _ => false,
-    })
 }
 
 fn missing(module: &Module, entry: &str) -> Error {
@@ -250,6 +261,8 @@ pub struct UserShader<'a> {
     symmetry: Symmetry,
     /// Turns after which the driver stops its loops, if it has any and the driver does.
     loop_turns: Option<u32>,
+    /// Whether the driver may have stopped them.
+    is_cut: bool,
     pipeline: wgpu::ComputePipeline,
     bindings: wgpu::BindGroup,
     job: wgpu::Buffer,
@@ -263,15 +276,17 @@ pub struct UserShader<'a> {
 
 const WORKGROUP: usize = 64;
 /// Pairs in a dispatch: at first, and at most.
-const BATCH: usize = 1 << 10;
+const BATCH: usize = WORKGROUP;
 const LARGEST_BATCH: usize = 1 << 17;
 /// Dispatches longer than this, s, are halved, shorter than a quarter doubled: well below the 2 s after which
 /// drivers lose patience.
 const LONG: f64 = 0.08;
 /// A shader that takes longer for one dispatch does not end.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_secs(30);
 /// What values hold before they are computed: a NaN that no arithmetic makes.
 const UNTOUCHED: u32 = 0xffc0_71ed;
+/// What a value is where the loops took more turns than every driver runs: another such NaN.
+const CUT: u32 = 0xffc0_71ee;
 
 impl<'a> UserShader<'a> {
     /// Compiles a function for a device. `parameters` are its own, in its order.
@@ -298,19 +313,23 @@ impl<'a> UserShader<'a> {
         };
         let loop_turns = if function.loops { device.canary()?.loop_turns } else { None };
         let (wgpu, _) = device.wgpu();
-        let source = wgpu::ShaderSource::Wgsl(function.compose().into());
         let pipeline = device.guarded(|| {
-            let module = wgpu
-                .create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(&function.entry), source });
-            device.fault()?;
-            Ok(wgpu.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(&function.entry),
-                layout: None,
-                module: &module,
-                entry_point: None,
-                compilation_options: Default::default(),
-                cache: None,
-            }))
+            limits::with_stack(function.is_deep, || {
+                let source = wgpu::ShaderSource::Naga(Cow::Owned(function.compose(loop_turns)?));
+                let module = wgpu.create_shader_module(wgpu::ShaderModuleDescriptor {
+                    label: Some(&function.entry),
+                    source,
+                });
+                device.fault()?;
+                Ok(wgpu.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                    label: Some(&function.entry),
+                    layout: None,
+                    module: &module,
+                    entry_point: None,
+                    compilation_options: Default::default(),
+                    cache: None,
+                }))
+            })
         });
         let pipeline = pipeline.map_err(refused)?;
 
@@ -348,6 +367,7 @@ impl<'a> UserShader<'a> {
             cosine,
             symmetry,
             loop_turns,
+            is_cut: false,
             pipeline,
             bindings,
             job,
@@ -416,6 +436,10 @@ impl<'a> UserShader<'a> {
                 self.function.entry
             )));
         }
+        if out[first..].iter().any(|value| value.to_bits() == CUT) {
+            self.is_cut = true;
+            return Err(lost(format!("it stops the loops of fn {}", self.function.entry)));
+        }
         if cosine {
             // f cos θi as it was returned, by the cosine as it was given. What is not finite stays so.
             for (values, pair) in out[first..].chunks_exact_mut(self.function.channels).zip(&pairs) {
@@ -462,14 +486,13 @@ impl Subject for UserShader<'_> {
         0.5 * f64::from(f32::EPSILON)
     }
 
-    fn notes(&self) -> Vec<String> {
-        let stops = |turns| {
-            format!(
-                "it has loops, and this driver stops an invocation's after {turns} turns in all, silently: where fn {} \
-                 takes more, what is checked is cut short",
-                self.function.entry
-            )
-        };
-        self.loop_turns.map(stops).into_iter().collect()
+    fn cut_short(&self) -> Option<String> {
+        let turns = self.loop_turns.filter(|_| self.is_cut)?;
+        Some(format!(
+            "the loops of fn {} take more than {} turns for a pair, and this driver silently stops loops after {turns} turns of \
+             all pairs in step; use another driver or fewer turns",
+            self.function.entry,
+            limits::certain_turns(turns),
+        ))
     }
 }

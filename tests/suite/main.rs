@@ -46,6 +46,8 @@ mod scenes;
 #[cfg(feature = "cli")]
 mod storage;
 mod stream;
+#[cfg(feature = "cli")]
+mod supply_chain;
 #[cfg(feature = "scene")]
 mod textures;
 mod thin_film;
