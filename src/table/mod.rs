@@ -69,8 +69,13 @@ pub struct TableError {
     /// Relative errors are |x − f| / max(f, floor); in the table's unit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub floor: Option<f64>,
-    /// The error that the rule promises a priori, where it promises one.
+    /// The bound on the error of the stored values, where there is one: of integrals the difference of two rules and what the
+    /// finer of them promises, or without a check what the rule promises; of values the budget of the arithmetic. It
+    /// includes `rounding`.
     pub estimate: Option<f64>,
+    /// The largest rounding to a 16-bit storage format.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rounding: Option<f64>,
     /// The largest difference found; `None` when nothing was checked.
     pub measured_max: Option<f64>,
     /// The root mean square of the differences found.
@@ -96,6 +101,7 @@ impl TableError {
             kind,
             floor,
             estimate,
+            rounding: None,
             measured_max: None,
             measured_rms: None,
             texels_checked: 0,
@@ -184,8 +190,8 @@ impl Values {
             match (&mut *self, other) {
                 (Self::F32(to), Self::F32(from)) => to[range.clone()].copy_from_slice(&from[range]),
                 (Self::F64(to), Self::F64(from)) => to[range.clone()].copy_from_slice(&from[range]),
-                // One path computes in one precision.
-                _ => {}
+                (Self::F32(to), Self::F64(from)) => range.for_each(|k| to[k] = from[k] as f32),
+                (Self::F64(to), Self::F32(from)) => range.for_each(|k| to[k] = f64::from(from[k])),
             }
         }
         replacement

@@ -49,6 +49,7 @@ mod stream;
 #[cfg(feature = "scene")]
 mod textures;
 mod thin_film;
+mod thousand;
 mod trade;
 mod truth;
 mod values;
