@@ -22,6 +22,8 @@ if [ "${1:-}" = --long ]; then
     scripts/drivers.sh "${@:2}" || status=1
     # Without GONIO_DATA they fail and say so.
     cargo test --release --test suite sample_data -- --ignored || status=1
+    # Half an hour: tables of random models and settings against the reference.
+    cargo test --release --test suite thousand:: -- --ignored --nocapture || status=1
     cargo test --release --test suite outputs::killed -- --ignored --nocapture || status=1
     exit $status
 fi

@@ -399,6 +399,30 @@ mod tests {
         ..RHO_DH
     };
 
+    /// Half floats meet their default tolerance and any that is above their rounding, with the check and by the plan alone;
+    /// below, the refusal tells the rounding from the rest.
+    #[test]
+    fn half_floats_meet_what_their_rounding_allows() {
+        let ggx = model::find("ggx").unwrap();
+        let axes =
+            vec![Axis::natural(Variable::Roughness, 3).unwrap(), Axis::natural(Variable::Mu, 5).unwrap()];
+        let plan = TablePlan::basis("t", &crate::table::quantity::SPLIT_SUM, ggx, None, axes).unwrap();
+        let bake = |tolerance: f64, check| {
+            let plan = plan.clone().with_storage(Storage::F16).unwrap().with_tolerance(tolerance).unwrap();
+            let table = Evaluator::Cpu.bake(&plan, check, &mut Timings::default(), &Unobserved).unwrap();
+            (within_tolerance(&plan, &table), table)
+        };
+        for (tolerance, check) in
+            [1e-3, 2.5e-4].into_iter().flat_map(|t| [(t, Check::Sample(0)), (t, Check::All)])
+        {
+            let (verdict, table) = bake(tolerance, check);
+            assert!(verdict.is_ok(), "{tolerance}, {check:?}: {verdict:?}");
+            assert!(table.error.measured_max <= table.error.estimate, "{:?}", table.error);
+        }
+        let why = bake(1e-4, Check::All).0.unwrap_err().to_string();
+        assert!(why.contains("of it by storage as f16"), "{why}");
+    }
+
     /// A new quantity is planned, integrated and compared with the reference by its description alone, and is ρ_dh of
     /// a reciprocal model. A lobe times Turquin's factor is not reciprocal: there the fixed direction decides.
     #[test]

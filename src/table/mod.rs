@@ -18,7 +18,6 @@ use crate::table::storage::Storage;
 use serde::Serialize;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::fmt::Display;
 
 /// A baked table: `quantity × axes × subject`, row-major, the channels last.
 #[derive(Debug, Clone, PartialEq)]
@@ -262,7 +261,7 @@ impl Table {
     /// Refuses impossible values as [`check_sane`](Self::check_sane) does, among values that begin at `texel`.
     pub(crate) fn check_sane_from<T>(&self, texel: usize, values: &[T]) -> Result<()>
     where
-        T: Copy + Into<f64> + Display,
+        T: Copy + Into<f64>,
     {
         let channels = self.channels.len();
         let Some(index) = values.iter().position(|&value| !self.quantity.allows(value.into())) else {
@@ -271,7 +270,7 @@ impl Table {
         Err(Error::Promise(format!(
             "table {}: {} at {}; {}",
             self.name,
-            values[index],
+            in_digits(values[index].into()),
             self.coordinates(texel + index / channels),
             self.quantity.allowed(),
         )))
@@ -284,6 +283,14 @@ impl Table {
             .map(|(axis, k)| format!("{} = {}", axis.variable().name(), axis.values()[k]))
             .collect();
         words.join(", ")
+    }
+}
+
+/// A number in few characters: with an exponent where it has many zeros.
+fn in_digits(value: f64) -> String {
+    match value.abs() {
+        x if x == 0.0 || (1e-3..1e6).contains(&x) || !x.is_finite() => value.to_string(),
+        _ => format!("{value:e}"),
     }
 }
 
@@ -300,6 +307,12 @@ pub fn indices(shape: &[usize], mut flat: usize) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn tiny_numbers_have_an_exponent() {
+        let printed = [-1.5e-30, 0.25, -3.0, 0.0, f64::NAN, 1e-4].map(in_digits);
+        assert_eq!(printed, ["-1.5e-30", "0.25", "-3", "0", "NaN", "1e-4"]);
+    }
 
     #[test]
     fn only_texels_that_differ_too_much_are_replaced() {
