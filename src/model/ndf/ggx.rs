@@ -70,5 +70,5 @@ impl Stretch for Ggx {
         [[4, 6], [5, 8], [8, 11], [12, 14], [20, 20], [38, 30], [54, 48], [58, 60], [58, 60], [58, 60]];
 }
 
-/// Beyond it, in units of α, the lobe holds 1e-18 of its weight.
+/// The cap of the coarse map: beyond it, in units of α, the lobe holds 1e-18 of its weight.
 pub(crate) const TAN_CAP: f64 = 1e9;
