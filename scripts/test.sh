@@ -25,6 +25,8 @@ if [ "${1:-}" = --long ]; then
     GONIO_THOROUGH=1 cargo test --release --workspace || status=1
     # Without GONIO_DATA they fail and say so.
     cargo test --release --test suite sample_data -- --ignored || status=1
+    # Half an hour: tables of random models and settings against the reference.
+    cargo test --release --test suite thousand:: -- --ignored --nocapture || status=1
     cargo test --release --test suite outputs::killed -- --ignored --nocapture || status=1
     cargo test --release --lib fuzz:: -- --ignored --nocapture || status=1
     scripts/fuzz.sh || status=1

@@ -51,6 +51,7 @@ mod supply_chain;
 #[cfg(feature = "scene")]
 mod textures;
 mod thin_film;
+mod thousand;
 mod trade;
 mod truth;
 mod values;

@@ -73,6 +73,7 @@ fn slopes(rule: &SlopeRule) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::tolerance::is_fine;
     use crate::model;
     use crate::model::Integral;
     use crate::table::axis::{Axis, Variable};
@@ -101,7 +102,7 @@ mod tests {
                     let turns = turns(&RuleSet::new(&plan, &plan.lobes()[0]));
                     let limit = match model.integral {
                         // A table that takes more is refused where that is not known to run.
-                        Integral::Mapped(_) if tolerance < 0.9e-6 => u32::MAX,
+                        Integral::Mapped(_) if is_fine(tolerance) => u32::MAX,
                         Integral::Mapped(_) if model.is_anisotropic() && tolerance < 0.9e-5 => u32::MAX,
                         Integral::Mapped(_) => STRICTEST,
                         _ if tolerance > 0.9e-8 => SAFE_TURNS,

@@ -12,7 +12,7 @@
 use crate::base::cubature::{CubatureCell, EVALUATIONS, Measured, kronrod, refine};
 use crate::base::half_angle::{Azimuth, Half, Pair};
 use crate::base::quadrature::{Node, gauss_legendre};
-use crate::base::tolerance::is_fine;
+use crate::base::tolerance::{decade, is_fine};
 use crate::model::directions::{Fixed, Sample};
 use crate::model::half_vector::stretched::panels;
 use crate::model::half_vector::{Kinks, Normal, Normals, Strip, normal, sample, strips};
@@ -233,7 +233,7 @@ pub(crate) fn mean(tolerance: f64) -> Vec<Node> {
     const RATIO: f64 = 4.0;
     let count = if is_fine(tolerance) {
         10
-    } else if tolerance < 0.9e-3 {
+    } else if decade(tolerance) > decade(1e-3) {
         8
     } else {
         5
