@@ -76,11 +76,14 @@ pub struct Microfacet {
     pub(crate) facets: Option<FacetSum>,
 }
 
+type VisitFacets =
+    fn(&directions::Fixed, &Setting, tolerance: f64, degree: Option<usize>, &mut dyn FnMut(Facet));
+
 /// Integrals of a lobe as sums over its facets, each F times the rest of the lobe.
 #[derive(Debug)]
 pub(crate) struct FacetSum {
     /// Visits the facets that meet a tolerance; or those that integrate polynomials of a degree in F's place.
-    pub visit: fn(&directions::Fixed, &Setting, tolerance: f64, Option<usize>, &mut dyn FnMut(Facet)),
+    pub visit: VisitFacets,
     /// F for c and 1 − c.
     pub fresnel: fn(c: f64, x: f64, &Setting) -> [f64; 2],
     /// The degree of the polynomial of c that F is within a tolerance, where F costs much.
@@ -557,6 +560,7 @@ mod tests {
     use crate::model::slope_azimuths::side;
     use rayon::prelude::*;
     use std::collections::BTreeSet;
+    use std::f64::consts::FRAC_PI_2;
 
     /// Names are keys of pipelines, words of recipes and parts of file names.
     #[test]
@@ -646,11 +650,18 @@ mod tests {
         let mut cases = Vec::new();
         let shape = model.shape.unwrap();
         for parameters in extremes(model) {
-            for alpha in [1.0, 0.9, 0.7, 0.5, 0.3, 0.1, 0.03, 0.01, 1e-3] {
+            let (alphas, mus) = match crate::base::is_thorough() {
+                true => (
+                    &[1.0, 0.9, 0.7, 0.5, 0.3, 0.1, 0.03, 0.01, 1e-3][..],
+                    &[MU_MIN, 1e-4, 1e-2, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.0][..],
+                ),
+                false => (&[1.0, 0.3][..], &[MU_MIN, 1e-2, 0.3, 1.0][..]),
+            };
+            for &alpha in alphas {
                 let setting = Setting { alpha: shape.measure(f64::sqrt(alpha)), parameters };
-                for mu in [MU_MIN, 1e-4, 1e-2, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.0] {
+                for &mu in mus {
                     let phis: &[f64] = if model.is_anisotropic() {
-                        &[0.0, 0.02, 0.1, 0.4, 0.8, 1.2, 1.5, 1.5707]
+                        &[0.0, 0.02, 0.1, 0.4, 0.8, 1.2, 1.5, FRAC_PI_2]
                     } else {
                         &[0.0]
                     };
