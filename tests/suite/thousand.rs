@@ -130,13 +130,13 @@ fn broken(number: u64, baker: &(Baker, wgpu::Device, wgpu::Queue)) -> Option<Vec
                     let error = (value(*texel, channel) - truth).abs();
                     let error = floor.map_or(error, |floor| error / truth.abs().max(floor));
                     // NaN is the worst.
-                    if !(error <= worst.0) {
+                    if error > worst.0 || error.is_nan() {
                         worst = (error, format!("{} for {truth} at texel {texel}", value(*texel, channel)));
                     }
                 }
             }
             let (error, place) = worst;
-            if !(error <= estimate + reference_error(&plan)) {
+            if error > estimate + reference_error(&plan) || error.is_nan() {
                 broken.push(format!("{way}: {error:.3e} where {estimate:.3e} is estimated, {place}"));
             }
         };
