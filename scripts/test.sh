@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Runs the tests. Where no Vulkan driver is found on Debian or Ubuntu it installs software Vulkan first.
-# --long runs them on more drivers (scripts/drivers.sh), and those that need the sample data in GONIO_DATA.
+# --long runs them with all of their cases and on more drivers (scripts/drivers.sh), those that need the sample data in
+# GONIO_DATA, and the parsers on mutated files, by chance and under a fuzzer (scripts/fuzz.sh).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -20,9 +21,15 @@ fi
 if [ "${1:-}" = --long ]; then
     status=0
     scripts/drivers.sh "${@:2}" || status=1
+    # All cases of the tests that otherwise take some of each kind.
+    GONIO_THOROUGH=1 cargo test --release --workspace || status=1
     # Without GONIO_DATA they fail and say so.
     cargo test --release --test suite sample_data -- --ignored || status=1
+    # Half an hour: tables of random models and settings against the reference.
+    cargo test --release --test suite thousand:: -- --ignored --nocapture || status=1
     cargo test --release --test suite outputs::killed -- --ignored --nocapture || status=1
+    cargo test --release --lib fuzz:: -- --ignored --nocapture || status=1
+    scripts/fuzz.sh || status=1
     exit $status
 fi
 

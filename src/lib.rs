@@ -126,6 +126,9 @@ pub mod check;
 pub mod cli;
 #[cfg(feature = "cli")]
 mod figure;
+#[cfg(any(feature = "fuzz", all(test, feature = "cli")))]
+#[doc(hidden)]
+pub mod fuzz;
 mod integrate;
 #[cfg(feature = "files")]
 pub mod io;

@@ -4,7 +4,7 @@
 
 /// r at which tan θm reaches `tan_max`.
 fn ndf_map_end(tan_max: real, alpha: real4) -> real4 {
-    let sinh_v = min(tan_max / alpha, real4(TAN_CAP));
+    let sinh_v = min(tan_max / alpha, real4(1e12));
     let cosh_2 = sqrt(0.5 + 0.5 * sqrt(1.0 + sinh_v * sinh_v)); // cosh(v/2)
     let cosh_4 = sqrt(0.5 + 0.5 * cosh_2);                      // cosh(v/4)
     return 0.25 * sinh_v / (cosh_2 * cosh_4 * (1.0 + cosh_4));

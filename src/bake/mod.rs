@@ -16,8 +16,6 @@ use crate::base::timings::Timings;
 use crate::base::tolerance::{CERTIFY_RATIO, ENERGY_SLACK, FINEST, KEPT_SHARE};
 use crate::integrate::rule_set::has_listed_directions;
 use crate::integrate::scale::factor_error;
-use crate::model::compensation::Factor;
-use crate::model::lobe::Lobe;
 use crate::plan::TablePlan;
 use crate::table::quantity::Limits;
 use crate::table::rule::Rule;
@@ -105,10 +103,40 @@ impl Evaluator {
             let finest = plan.rule_tolerance() <= FINEST;
             estimate = match finest {
                 true => None,
-                false => Some(path.certify(plan, &mut values, timings, &tick)?),
+                false => Some(self.certify(plan, &mut values, timings, &tick)?),
             };
         }
         Ok(Computed { values, estimate, origin: self.origin(plan, seconds) })
+    }
+
+    /// Certifies a table by the rule of a tenth of its tolerance, in the precision that this one takes: f32 would add its own
+    /// rounding to what it judges. Texels that differ by more than half the tolerance take the finer rule's value, which the
+    /// next rule then checks. Returns the largest difference that is left, with what the finer rule may itself be off; it
+    /// counts values that no further rule has checked.
+    fn certify(
+        &self,
+        plan: &TablePlan,
+        values: &mut Values,
+        timings: &mut Timings,
+        tick: &(impl Fn(f64) -> Result<()> + Sync),
+    ) -> Result<f64> {
+        const TRIES: i32 = 3;
+        let mut spent = Timings::default();
+        let mut bound = 0.0;
+        for finer in 1..=TRIES {
+            let second = plan.clone().with_tolerance(plan.tolerance() * CERTIFY_RATIO.powi(finer))?;
+            let certain = self.path(&second).evaluate(&second, &mut spent, tick)?;
+            let limit = KEPT_SHARE * plan.tolerance_before_storage();
+            let replacement = values.replace_beyond(limit, &certain, plan.channels().len());
+            bound = replacement.kept.max(replacement.replaced) + second.rule_tolerance().max(FINEST);
+            if replacement.replaced == 0.0 {
+                break;
+            }
+        }
+        timings.compose += spent.compose;
+        timings.compile += spent.compile;
+        timings.certify += spent.dispatch + spent.readback;
+        Ok(bound)
     }
 
     /// The origin of the table of a plan: its rule, precision and seconds.
@@ -157,13 +185,16 @@ impl Computed {
         tick: &(impl Fn(f64) -> Result<()> + Sync),
     ) -> Result<Table> {
         let Self { values, estimate, origin } = self;
-        let Stored { values, underflows } = plan
+        let Stored { values, underflows, rounding } = plan
             .stored()
             .store(values, plan.quantity().error)
             .map_err(|why| Error::Promise(format!("table {}: {why}", plan.name())))?;
-        let rounding = plan.stored().coarse_rounding(plan.quantity().error);
-        let mut error = table_error(plan, &values, check, estimate.map(|e| e + rounding), tick)?;
+        // The estimate of wider formats has been found with their rounding.
+        let rounding = (plan.stored().bytes() < Storage::F32.bytes()).then_some(rounding);
+        let estimate = estimate.map(|estimate| estimate + rounding.unwrap_or(0.0));
+        let mut error = table_error(plan, &values, check, estimate, tick)?;
         error.underflows = (plan.storage() == Storage::F16).then_some(underflows);
+        error.rounding = rounding;
         let table = origin.table(plan, values, error);
         table.check_sane()?;
         check_energy(plan, &table)?;
@@ -218,44 +249,11 @@ impl Path<'_> {
         }
     }
 
-    /// Certifies a table by the rule of a tenth of its tolerance. Texels that differ by more than half the
-    /// tolerance take the finer rule's value, which the next rule then checks. Returns the largest difference that is left;
-    /// it counts values that no further rule has checked.
-    fn certify(
-        self,
-        plan: &TablePlan,
-        values: &mut Values,
-        timings: &mut Timings,
-        tick: &(impl Fn(f64) -> Result<()> + Sync),
-    ) -> Result<f64> {
-        const TRIES: i32 = 3;
-        let mut spent = Timings::default();
-        let mut largest = 0.0;
-        for finer in 1..=TRIES {
-            let second = plan.clone().with_tolerance(plan.tolerance() * CERTIFY_RATIO.powi(finer))?;
-            let second = self.evaluate(&second, &mut spent, tick)?;
-            let second = match values {
-                Values::F32(_) => Values::F32(second.to_f32().into_owned()),
-                Values::F64(_) => second,
-            };
-            let replacement =
-                values.replace_beyond(KEPT_SHARE * plan.tolerance(), &second, plan.channels().len());
-            largest = replacement.kept.max(replacement.replaced);
-            if replacement.replaced == 0.0 {
-                break;
-            }
-        }
-        timings.compose += spent.compose;
-        timings.compile += spent.compile;
-        timings.certify += spent.dispatch + spent.readback;
-        Ok(largest)
-    }
-
     /// The error that is promised before anything is measured: the budget of values, or the tolerance of the warped rule.
     /// The other rules promise nothing.
     pub(crate) fn estimate(self, plan: &TablePlan) -> Option<f64> {
         if plan.quantity().is_integral() {
-            return (plan.rule() == Rule::Warped).then_some(plan.tolerance());
+            return (plan.rule() == Rule::Warped).then_some(plan.rule_tolerance());
         }
         let factors = factor_error(plan);
         Some(
@@ -321,10 +319,17 @@ pub fn within_tolerance(plan: &TablePlan, table: &Table) -> Result<()> {
         return Ok(());
     }
     // The texel of the number: of the difference between two rules none is known.
-    let worst = match measured == largest {
+    let mut worst = match measured == largest {
         true => table.error.worst.iter().map(|(name, value)| format!("{name} = {value}")).collect(),
         false => vec!["by a finer rule".to_string()],
     };
+    if let Some(rounding) = table.error.rounding {
+        let rest = (largest - rounding).max(0.0);
+        worst.push(format!(
+            "{rounding:.3e} of it by storage as {}, {rest:.1e} by the rest",
+            table.storage.name()
+        ));
+    }
     let remedy = match plan.rule() {
         Rule::Grid { .. } => "take a finer grid or the warped rule",
         Rule::Gauss { .. } | Rule::Hammersley { .. } | Rule::Vndf { .. } | Rule::Random { .. } => {
@@ -360,15 +365,7 @@ fn check_energy(plan: &TablePlan, table: &Table) -> Result<()> {
     }
     // A basis is weighed by F0 and F90 ≤ 1, so its components reflect together; RGB does not mix.
     let together = plan.is_basis();
-    // A lobe of multiple scattering makes up for the loss of another lobe, whose bound covers both.
-    let compensates = |lobe: &Lobe| lobe.factors().iter().any(Factor::is_missing);
-    let alone = plan.lobes().iter().all(compensates);
-    let bound: f64 = plan
-        .lobes()
-        .iter()
-        .filter(|lobe| alone || !compensates(lobe))
-        .map(|lobe| lobe.weights().as_flattened().iter().copied().fold(0.0, f64::max) * lobe.rho_bound())
-        .sum();
+    let bound = plan.rho_bound();
     for texel in 0..table.texels() {
         let channels = table.texel(texel).into_iter();
         let reflected = if together { channels.sum() } else { channels.fold(0.0, f64::max) };
@@ -401,6 +398,30 @@ mod tests {
         evaluation: Evaluation::Directional(FixedDirection::Exitant),
         ..RHO_DH
     };
+
+    /// Half floats meet their default tolerance and any that is above their rounding, with the check and by the plan alone;
+    /// below, the refusal tells the rounding from the rest.
+    #[test]
+    fn half_floats_meet_what_their_rounding_allows() {
+        let ggx = model::find("ggx").unwrap();
+        let axes =
+            vec![Axis::natural(Variable::Roughness, 3).unwrap(), Axis::natural(Variable::Mu, 5).unwrap()];
+        let plan = TablePlan::basis("t", &crate::table::quantity::SPLIT_SUM, ggx, None, axes).unwrap();
+        let bake = |tolerance: f64, check| {
+            let plan = plan.clone().with_storage(Storage::F16).unwrap().with_tolerance(tolerance).unwrap();
+            let table = Evaluator::Cpu.bake(&plan, check, &mut Timings::default(), &Unobserved).unwrap();
+            (within_tolerance(&plan, &table), table)
+        };
+        for (tolerance, check) in
+            [1e-3, 2.5e-4].into_iter().flat_map(|t| [(t, Check::Sample(0)), (t, Check::All)])
+        {
+            let (verdict, table) = bake(tolerance, check);
+            assert!(verdict.is_ok(), "{tolerance}, {check:?}: {verdict:?}");
+            assert!(table.error.measured_max <= table.error.estimate, "{:?}", table.error);
+        }
+        let why = bake(1e-4, Check::All).0.unwrap_err().to_string();
+        assert!(why.contains("of it by storage as f16"), "{why}");
+    }
 
     /// A new quantity is planned, integrated and compared with the reference by its description alone, and is ρ_dh of
     /// a reciprocal model. A lobe times Turquin's factor is not reciprocal: there the fixed direction decides.

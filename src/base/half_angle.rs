@@ -159,6 +159,26 @@ impl Azimuth {
         let back = (-delta_phi.cos()).max(0.0);
         // φe = φi + π + δφ; sums and differences as products.
         let (sin_mid, cos_mid) = (phi_i + 0.5 * delta_phi).sin_cos();
+        Self::of_halves([sin, cos], [sin_mid, cos_mid], back)
+    }
+
+    /// The same from the sine and cosine of φi, and those of δφ, both with the same length and right to their last digits.
+    pub(crate) fn of_sines_and_cosines([sin_i, cos_i]: [f64; 2], [y, x]: [f64; 2]) -> Self {
+        let length = (x * x + y * y).sqrt();
+        let [sin_delta, cos_delta] = if length > 0.0 { [y / length, x / length] } else { [0.0, 1.0] };
+        // Of sin(δ/2) and cos(δ/2) the larger by the root, which does not cancel.
+        let larger = (0.5 * (1.0 + cos_delta.abs())).sqrt();
+        let smaller = 0.5 * sin_delta / larger;
+        let [sin, cos] = match cos_delta < 0.0 {
+            true => [larger.copysign(sin_delta), smaller.abs()],
+            false => [smaller, larger],
+        };
+        let mid = [sin_i * cos + cos_i * sin, cos_i * cos - sin_i * sin];
+        Self::of_halves([sin, cos], mid, (-cos_delta).max(0.0))
+    }
+
+    /// The terms from sine and cosine of δφ/2, and of φi + δφ/2.
+    fn of_halves([sin, cos]: [f64; 2], [sin_mid, cos_mid]: [f64; 2], back: f64) -> Self {
         let frame = HalfSums { cp: sin_mid * sin, cm: cos_mid * cos, sp: -cos_mid * sin, sm: sin_mid * cos };
         Self { sin2: sin * sin, cos2: cos * cos, back, weight: 0.0, bin: 0.0, frame }
     }

@@ -12,3 +12,9 @@ pub mod timings;
 pub mod tolerance;
 #[cfg(feature = "files")]
 pub(crate) mod words;
+
+/// Whether tests take all of their cases, as `scripts/test.sh --long` has them, rather than a few of each kind.
+#[cfg(test)]
+pub(crate) fn is_thorough() -> bool {
+    std::env::var_os("GONIO_THOROUGH").is_some()
+}

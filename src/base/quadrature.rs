@@ -1,6 +1,7 @@
 //! Quadrature rules on [0, 1]: Gauss–Legendre and midpoints.
 
 use std::f64::consts::PI;
+use std::sync::OnceLock;
 
 /// A node and its weight.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,8 +15,13 @@ pub struct Node {
 /// The Gauss–Legendre rule with `n` nodes, exact for polynomials of degree 2n − 1.
 ///
 /// Newton's iteration on P_n from Tricomi's first guess (Abramowitz & Stegun 1964, 22.16.6; weights
-/// 25.4.29).
+/// 25.4.29). A rule of up to 256 nodes is found once.
 pub fn gauss_legendre(n: usize) -> Vec<Node> {
+    static FOUND: [OnceLock<Vec<Node>>; 257] = [const { OnceLock::new() }; 257];
+    FOUND.get(n).map_or_else(|| legendre_nodes(n), |found| found.get_or_init(|| legendre_nodes(n)).clone())
+}
+
+fn legendre_nodes(n: usize) -> Vec<Node> {
     let mut nodes: Vec<_> = (0..n)
         .map(|k| {
             let mut x = (PI * (k as f64 + 0.75) / (n as f64 + 0.5)).cos();

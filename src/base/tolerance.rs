@@ -6,12 +6,13 @@
 //! | who spends | share | why |
 //! |---|---|---|
 //! | the quadrature rule | T, or T/10 (`RULE_SHARE`) where storage rounds or a reader interpolates | rounding to f16 or unorm16 and bilinear look-ups take the rest |
+//! | the rule below half floats | what their rounding leaves, if that is less; T/100 (`LEAST_BEFORE_STORAGE`) at least | halves round by up to 2.44e-4 below 1: of 2.5e-4 the rule may take 6e-6. Where the bound is above T, values may still be small |
 //! | the rule below unorm16 | at most ¼ step (`UNORM_RULE`) | the rule may not lift an integral of 1 above what rounds to 1 |
 //! | interpolation between integrals | 1/8 of the rule's share along each axis (`CHEBYSHEV_SHARE`) | the rule at the sources and f32 rounding take the other 6/8 |
 //! | a lobe times factors | 1/100 of the rule's share (`FACTOR_SHARE`) | node counts are measured for the lobe alone; a factor bends ρ where the lobe does not: with counts of the full share a restored lobe is off by 9e-6 at 1e-6 |
 //! | the certificate's second rule | T/10 (`CERTIFY_RATIO`) | its own error then is a tenth of what it judges |
 //! | the reference of a sampled check | T/20 (`REFERENCE_SHARE`), all its digits with `Check::All` | a right table then measures at most T + T/20, and its integrals cost a tenth of those with all digits |
-//! | a texel that the certificate keeps | T/2 (`KEPT_SHARE`) | both rules may err towards each other |
+//! | a texel that the certificate keeps | half (`KEPT_SHARE`) of what rounding to storage leaves of T | both rules may err towards each other |
 //! | energy above the declared bound | 2 T (`ENERGY_SLACK`) | two channels add up, each within T |
 //! | a layout's bilinear error | 0.98 T (`LAYOUT_MARGIN`) | the search tests points; the worst lies between them |
 //! | look-ups of listed directions | T/10 (`LISTED_SHARE`) for the integrals that stand in for the exact values, where no bilinear error is promised | an integral over listed directions takes as long as a hundred others |
@@ -55,6 +56,9 @@ impl Tolerance {
 
 /// The rule's share where rounding of storage or bilinear look-ups take the rest.
 pub(crate) const RULE_SHARE: f64 = 0.1;
+
+/// The least share of the tolerance that is left to the rule below half floats.
+pub(crate) const LEAST_BEFORE_STORAGE: f64 = 0.01;
 
 /// The largest error of the rule below unorm16: a quarter of its step, 1/65535.
 pub(crate) const UNORM_RULE: f64 = 0.25 / 65535.0;
@@ -101,14 +105,26 @@ pub(crate) fn decade(tolerance: f64) -> usize {
     (-tolerance.log10() - 1e-9).ceil().clamp(1.0, 10.0) as usize - 1
 }
 
-/// Whether a tolerance is finer than f32 meets: such tables take the maps that converge further.
+/// Whether a tolerance is finer than f32 meets: such tables take the maps that converge further. The tables of node counts
+/// are measured with the coarse maps to 1e-6, and with the fine ones beyond.
 pub(crate) fn is_fine(tolerance: f64) -> bool {
-    tolerance < 0.9e-6
+    decade(tolerance) > decade(1e-6)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A tolerance that takes the node counts of 1e-7 takes the map that they were measured with: 9.5e-7 by the coarse one
+    /// was off by 1.58e-6.
+    #[test]
+    fn counts_and_maps_change_at_the_same_tolerance() {
+        for (tolerance, index) in
+            [(1e-6, 5), (1e-6 * (1.0 - 1e-12), 5), (0.95e-6, 6), (1e-7, 6), (1e-6 * 1.01, 5)]
+        {
+            assert_eq!((decade(tolerance), is_fine(tolerance)), (index, index > 5), "{tolerance:e}");
+        }
+    }
 
     #[test]
     fn a_tolerance_is_finite_and_above_0() {

@@ -60,14 +60,16 @@ pub(crate) fn measure(plan: &TablePlan, values: &Values, check: Check) -> Result
     let tolerance = fast_tolerance(plan);
     let dense = Dense::new(plan, values, test_grid(plan), tolerance);
     let (searched, referenced) = match (is_anisotropic_mean(plan), has_listed_directions(plan)) {
-        (true, _) => (SEARCHED / 4, REFERENCED / 8),
+        (true, _) => (1, 0),
         (false, true) => (SEARCHED / 4, REFERENCED),
         (false, false) => (SEARCHED, REFERENCED),
     };
     let worst = dense.worst(&domain, searched);
     let mut points: Vec<_> = worst.iter().map(|&texel| dense.around(plan, values, &domain, texel)).collect();
-    points
-        .extend(check::sample(&dense.shape(), referenced).into_iter().map(|texel| dense.coordinates(texel)));
+    if referenced > 0 {
+        let further = check::sample(&dense.shape(), referenced);
+        points.extend(further.into_iter().map(|texel| dense.coordinates(texel)));
+    }
 
     let channels = plan.channels().len();
     let checked: Vec<_> = points
@@ -224,23 +226,39 @@ impl Dense {
         texels
     }
 
-    /// The coordinates of the worst point of a finer grid between the neighbours of a point, within the domain.
+    /// The coordinates of the worst point between the neighbours of a point, within the domain: the worst of a finer grid,
+    /// then of still finer ones about that. One grid of eighths alone misses up to 0.9 % of the maximum.
     fn around(&self, plan: &TablePlan, values: &Values, domain: &[[f64; 2]], texel: usize) -> Vec<f64> {
-        const STEPS: i32 = 4;
-        let near = self.coordinates.iter().zip(indices(&self.shape(), texel)).zip(domain);
-        let near = near.map(|((axis, k), [a, b])| {
-            let [low, high] = [k.saturating_sub(1), (k + 1).min(axis.len() - 1)].map(|k| axis[k]);
-            let step = |s: i32| {
-                let (end, share) = (if s < 0 { low } else { high }, f64::from(s.abs()) / f64::from(STEPS));
-                (axis[k] + (end - axis[k]) * share).clamp(*a, *b)
-            };
-            sorted((-STEPS..=STEPS).map(step).collect())
-        });
-        let finer = Dense::new(plan, values, near.collect(), self.tolerance);
+        let mut finer = self.finer(plan, values, domain, texel, 4);
+        for _ in 0..2 {
+            let Some(&worst) = finer.worst(domain, 1).first() else { return self.coordinates(texel) };
+            finer = finer.finer(plan, values, domain, worst, 2);
+        }
         finer
             .worst(domain, 1)
             .first()
             .map_or_else(|| self.coordinates(texel), |&worst| finer.coordinates(worst))
+    }
+
+    /// The grid of so many steps from a point to each of its neighbours.
+    fn finer(
+        &self,
+        plan: &TablePlan,
+        values: &Values,
+        domain: &[[f64; 2]],
+        texel: usize,
+        steps: i32,
+    ) -> Self {
+        let near = self.coordinates.iter().zip(indices(&self.shape(), texel)).zip(domain);
+        let near = near.map(|((axis, k), [a, b])| {
+            let [low, high] = [k.saturating_sub(1), (k + 1).min(axis.len() - 1)].map(|k| axis[k]);
+            let step = |s: i32| {
+                let (end, share) = (if s < 0 { low } else { high }, f64::from(s.abs()) / f64::from(steps));
+                (axis[k] + (end - axis[k]) * share).clamp(*a, *b)
+            };
+            sorted((-steps..=steps).map(step).collect())
+        });
+        Dense::new(plan, values, near.collect(), self.tolerance)
     }
 
     /// The root mean square error. Each point has the weight of the part of each range that is nearest to it.

@@ -43,12 +43,18 @@ pub(crate) struct Comparison<'a> {
 
 /// The texels of other tables that a mean over all directions of an anisotropic lobe counts for: its reference integrates over
 /// four angles.
-const MEAN_COST: usize = 64;
+const MEAN_COST: usize = 256;
 
 /// Whether a table has means over all directions of an anisotropic lobe.
 pub(super) fn is_anisotropic_mean(table: &TablePlan) -> bool {
     let is_mean = table.quantity().evaluation == Evaluation::Hemispherical;
     is_mean && table.lobes().iter().any(|lobe| lobe.model().is_anisotropic())
+}
+
+/// At most so many texels, as far apart as they can be: the middle one of a table, first of all.
+fn evenly(texels: usize, count: usize) -> Vec<usize> {
+    let count = count.min(texels);
+    (0..count).map(|k| (2 * k + 1) * texels / (2 * count)).collect()
 }
 
 impl<'a> Comparison<'a> {
@@ -58,7 +64,7 @@ impl<'a> Comparison<'a> {
             _ if !known => Some(Vec::new()),
             Check::All => None,
             Check::Sample(n) if is_anisotropic_mean(table) => {
-                Some(sample(&table.shape(), n.div_ceil(MEAN_COST)))
+                Some(evenly(table.texels(), n.div_ceil(MEAN_COST)))
             }
             Check::Sample(n) => Some(sample(&table.shape(), n)),
         };

@@ -25,8 +25,8 @@ pub struct Args {
     /// The folder for the tables and manifest.json, created if missing
     #[arg(long, short, value_name = "DIR", required_unless_present = "dry_run")]
     out: Option<PathBuf>,
-    /// The largest error of a table: absolute for integrals, relative for values [default: the recipe's,
-    /// else 1e-4]
+    /// The largest error of a table: absolute for integrals, relative for values. It wins over the
+    /// recipe's and its tables' [default: those, else 1e-4]
     #[arg(long, value_name = "T", value_parser = tolerance, allow_negative_numbers = true)]
     tolerance: Option<f64>,
     /// `auto` (best GPU, else software Vulkan, else CPU), `cpu`, or part of an adapter's name

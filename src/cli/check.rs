@@ -101,7 +101,7 @@ with the f64 reference (scenes and models), and energy (ρ_dh ≤ 1). The worst 
 digits, as a command to paste; for your own shader: its options and the two vectors.
 If a format is known to break a promise, gonio reports it and checks the known bound.
 
-Exit codes: 0 all promises hold (or break within their known bound), 1 a promise is broken, 2 bad input,
+Exit codes: 0 all promises hold (or break within their known bound), 1 a promise is broken or not checked, 2 bad input,
 3 no device, 130 interrupted";
 
 /// Parses a count, also as 1e8.
@@ -248,6 +248,7 @@ fn show(finding: &Finding) -> String {
         Verdict::Kept => (GOOD, "kept    "),
         Verdict::Declared => (WARNING, "declared"),
         Verdict::Broken => (ERROR, "BROKEN  "),
+        Verdict::Unchecked => (ERROR, "UNKNOWN "),
     };
     let note = finding.note.as_ref().map_or(String::new(), |note| format!("; {note}"));
     format!("{:13}  {style}{word}{style:#}  {}{note}", finding.property, finding.said)
@@ -261,7 +262,10 @@ fn verdict(all: &[Checked]) -> Result<()> {
     let words: Vec<_> = all
         .iter()
         .filter(|checked| !checked.report.is_kept())
-        .map(|Checked { report, .. }| format!("{} breaks {}", report.subject, broken(report).join(", ")))
+        .map(|Checked { report, .. }| match broken(report)[..] {
+            [] => format!("{} is not checked", report.subject),
+            ref names => format!("{} breaks {}", report.subject, names.join(", ")),
+        })
         .collect();
     if words.is_empty() { Ok(()) } else { Err(Error::Promise(words.join("; "))) }
 }

@@ -20,12 +20,13 @@ pub fn write(path: &Path, all: &[Checked], outputs: &mut Outputs) -> Result<()> 
 /// Counts tests, failures and seconds, for the attributes of one suite or of all.
 fn totals<'a>(all: impl Iterator<Item = &'a Checked> + Clone) -> [(&'static str, String); 4] {
     let findings = all.clone().flat_map(|checked| &checked.report.findings);
-    let broken = findings.clone().filter(|f| f.verdict == Verdict::Broken).count();
+    let count = |verdict| findings.clone().filter(|finding| finding.verdict == verdict).count().to_string();
+    let (broken, unchecked) = (count(Verdict::Broken), count(Verdict::Unchecked));
     let seconds: f64 = all.map(|checked| checked.seconds).sum();
     [
         ("tests", findings.count().to_string()),
-        ("failures", broken.to_string()),
-        ("errors", "0".into()),
+        ("failures", broken),
+        ("errors", unchecked),
         ("time", format!("{seconds:.3}")),
     ]
 }
@@ -86,12 +87,17 @@ fn case(
     let case = [("classname", subject), ("name", finding.property)];
     let case = writer.create_element("testcase").with_attributes(case);
     case.write_inner_content(|writer| {
-        match finding.verdict {
-            Verdict::Broken => writer
-                .create_element("failure")
+        let element = match finding.verdict {
+            Verdict::Broken => Some("failure"),
+            Verdict::Unchecked => Some("error"),
+            Verdict::Kept | Verdict::Declared => None,
+        };
+        match element {
+            Some(element) => writer
+                .create_element(element)
                 .with_attributes([("type", finding.property), ("message", said.as_ref())])
                 .write_text_content(BytesText::new(&details))?,
-            _ => writer.create_element("system-out").write_text_content(BytesText::new(&details))?,
+            None => writer.create_element("system-out").write_text_content(BytesText::new(&details))?,
         };
         Ok(())
     })?;

@@ -7,6 +7,7 @@ mod devices;
 mod eval;
 mod gallery;
 mod junit;
+mod licenses;
 mod light;
 mod models;
 mod plot;
@@ -57,6 +58,8 @@ enum Command {
     Models(models::Args),
     /// List the devices and test their drivers
     Devices(devices::Args),
+    /// Print the licences of the crates and fonts that the program is made of
+    Licenses,
 }
 
 const AFTER_HELP: &str = "\
@@ -92,6 +95,7 @@ pub fn main() -> ! {
         Command::Light(args) => light::run(&args),
         Command::Models(args) => models::run(&args),
         Command::Devices(args) => devices::run(&args),
+        Command::Licenses => licenses::run(),
     });
     stop::wait_if_asked();
     let code = result.map_or_else(

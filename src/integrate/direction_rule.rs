@@ -6,6 +6,7 @@ use crate::integrate::product_rule::DiffuseRule;
 use crate::integrate::scale::LobeScale;
 use crate::model::directions::{Fixed, Map, Sample};
 use crate::model::parameters::Setting;
+use crate::model::{Facet, FacetSum, Model};
 use rayon::prelude::*;
 
 /// The inner integrals over listed directions, one for each (setting, fixed direction).
@@ -13,8 +14,8 @@ use rayon::prelude::*;
 pub(crate) struct DirectionRule {
     source: DirectionSource,
     pub fixed: Vec<Fixed>,
-    settings: Vec<Setting>,
-    tolerance: f64,
+    pub settings: Vec<Setting>,
+    pub tolerance: f64,
     /// The factors that multiply the lobe at each setting; empty where it has none.
     scales: Vec<LobeScale>,
     /// Whether the fixed direction is ωe.
@@ -38,6 +39,13 @@ pub(crate) enum DirectionSum {
     Limit([f64; 2]),
 }
 
+/// An inner integral's setting, its fixed direction with the factors' kinks, and the factors.
+pub(crate) struct At {
+    pub setting: Setting,
+    pub fixed: Fixed,
+    pub scale: LobeScale,
+}
+
 impl DirectionRule {
     pub fn new(source: DirectionSource, fixed: Vec<Fixed>, settings: Vec<Setting>, tolerance: f64) -> Self {
         Self { source, fixed, settings, tolerance, scales: Vec::new(), fixed_is_exitant: false }
@@ -50,35 +58,86 @@ impl DirectionRule {
         Self { scales, fixed_is_exitant, tolerance, ..self }
     }
 
-    /// The inner integral of an index, in which the fixed direction turns fastest.
+    /// Whether factors multiply the lobe.
+    pub fn has_factors(&self) -> bool {
+        !self.scales.is_empty()
+    }
+
+    /// The inner integral of an index, in which the fixed direction turns fastest, as directions.
     pub fn integral(&self, index: usize) -> DirectionSum {
-        let row = index / self.fixed.len();
-        let (setting, fixed) = (&self.settings[row], &self.fixed[index % self.fixed.len()]);
-        let scale = self.scales.get(row).cloned().unwrap_or_default();
-        let fixed = &Fixed { kinks: scale.kinks(fixed.mu), ..fixed.clone() };
+        let At { setting, fixed, scale } = &self.at(index);
         let sum = match self.source {
             DirectionSource::Map(map) => match (map.limit)(fixed.mu, setting) {
                 Some(limit) => DirectionSum::Limit(limit),
                 None => DirectionSum::Samples((map.samples)(fixed, setting, self.tolerance)),
             },
             DirectionSource::Product(rule) => {
-                DirectionSum::Samples(rule.samples(fixed, &scale, self.tolerance))
+                DirectionSum::Samples(rule.samples(fixed, scale, self.tolerance))
             }
             DirectionSource::Delta(limit) => DirectionSum::Limit(limit(fixed.mu, setting)),
         };
         if scale.is_one() {
             return sum;
         }
-        let factor = |other: f64| match self.fixed_is_exitant {
-            true => scale.value(other, fixed.mu),
-            false => scale.value(fixed.mu, other),
-        };
         match sum {
-            DirectionSum::Limit(limit) => DirectionSum::Limit(limit.map(|x| x * factor(fixed.mu))),
+            DirectionSum::Limit(limit) => {
+                DirectionSum::Limit(limit.map(|x| x * self.factor(scale, fixed, fixed.mu)))
+            }
             DirectionSum::Samples(mut samples) => {
-                samples.iter_mut().for_each(|sample| sample.weight *= factor(sample.pair.mu_e));
+                samples.iter_mut().for_each(|s| s.weight *= self.factor(scale, fixed, s.pair.mu_e));
                 DirectionSum::Samples(samples)
             }
+        }
+    }
+
+    /// The inner integral of an index of a lobe, by its facets if it has them.
+    pub fn sum(&self, index: usize, model: &Model) -> [f64; 2] {
+        let mut sum = [0.0; 2];
+        let mut add = |weight: f64, [a, b]: [f64; 2]| sum = [sum[0] + weight * a, sum[1] + weight * b];
+        if let Some(facets) = self.facets(index, model) {
+            let At { setting, fixed, scale } = &self.at(index);
+            (facets.visit)(fixed, setting, self.tolerance, None, &mut |Facet { c, mu_e, weight }| {
+                let factor = if scale.is_one() { 1.0 } else { self.factor(scale, fixed, mu_e) };
+                add(factor * weight, (facets.fresnel)(c, 1.0 - c, setting));
+            });
+            return sum;
+        }
+        match self.integral(index) {
+            DirectionSum::Limit(limit) => return limit,
+            DirectionSum::Samples(samples) => {
+                let setting = &self.settings[index / self.fixed.len()];
+                for Sample { pair, azimuth, weight } in &samples {
+                    add(*weight, (model.lobe)(pair, azimuth, setting));
+                }
+            }
+        }
+        sum
+    }
+
+    /// How a lobe's facets are visited, where its integral of an index has facets.
+    pub fn facets(&self, index: usize, model: &Model) -> Option<&'static FacetSum> {
+        let facets = model.microfacet?.facets.as_ref()?;
+        let At { setting, fixed, .. } = self.at(index);
+        match self.source {
+            DirectionSource::Map(map) => (map.limit)(fixed.mu, &setting).is_none().then_some(facets),
+            _ => None,
+        }
+    }
+
+    /// What an inner integral of an index has.
+    pub fn at(&self, index: usize) -> At {
+        let row = index / self.fixed.len();
+        let scale = self.scales.get(row).cloned().unwrap_or_default();
+        let fixed = &self.fixed[index % self.fixed.len()];
+        let fixed = Fixed { kinks: scale.kinks(fixed.mu), ..fixed.clone() };
+        At { setting: self.settings[row], fixed, scale }
+    }
+
+    /// The factors at the cosine of the other direction.
+    fn factor(&self, scale: &LobeScale, fixed: &Fixed, other: f64) -> f64 {
+        match self.fixed_is_exitant {
+            true => scale.value(other, fixed.mu),
+            false => scale.value(fixed.mu, other),
         }
     }
 

@@ -1,10 +1,9 @@
 //! Evaluates the integrals of a lobe in f64 on the host, on all cores.
 
 use super::chebyshev::Matrix;
-use super::direction_rule::DirectionSum;
+use super::fresnel_series::SeriesIntegrals;
 use super::rule_set::{InnerRule, RuleSet};
 use crate::model::ALPHA_MIN_INTEGRAL;
-use crate::model::directions::Sample;
 use crate::model::lobe::Lobe;
 use rayon::prelude::*;
 
@@ -19,7 +18,17 @@ pub(crate) fn texels<E: Send>(
     tick: &(impl Fn(f64) -> Result<(), E> + Sync),
 ) -> Result<Vec<[f64; 2]>, E> {
     let count = rules.alphas.len() * inner.count();
-    let raw = |index: usize| integrate(rules, inner, lobe, index / inner.count(), index % inner.count());
+    let series = match inner {
+        InnerRule::Directions(rule) => SeriesIntegrals::new(rule, lobe, tick)?,
+        _ => None,
+    };
+    let raw = |index: usize| {
+        let by_series = series.as_ref().and_then(|series| series.integral(index));
+        by_series
+            .unwrap_or_else(|| integrate(rules, inner, lobe, index / inner.count(), index % inner.count()))
+    };
+    // Where there are moments, these were the work.
+    let tick = |share: f64| if series.is_some() { Ok(()) } else { tick(share) };
     if let [sum] = outer {
         let texels = count / sum.columns;
         let texel = |texel: usize| {
@@ -74,14 +83,7 @@ fn integrate(rules: &RuleSet, inner: &InnerRule, lobe: &Lobe, row: usize, k: usi
                 add(pairs[k].weight * azimuth.weight, (lobe.model().lobe)(&pairs[k], azimuth, setting));
             }
         }
-        InnerRule::Directions(rule) => match rule.integral(row * rule.fixed.len() + k) {
-            DirectionSum::Limit(limit) => return limit,
-            DirectionSum::Samples(samples) => {
-                for Sample { pair, azimuth, weight } in &samples {
-                    add(*weight, (lobe.model().lobe)(pair, azimuth, setting));
-                }
-            }
-        },
+        InnerRule::Directions(rule) => return rule.sum(row * rule.fixed.len() + k, lobe.model()),
         InnerRule::ClosedForm { directional, mus } => return directional(mus[k], setting),
     }
     sum

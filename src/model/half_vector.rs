@@ -164,10 +164,11 @@ fn along(
     normals: &Normals,
     samples: &mut Vec<Sample>,
 ) {
+    let azimuth: [f64; 2] = fixed.phi.sin_cos().into();
     for strip in strips(turn, fixed, tolerance, normals) {
         for node in nodes {
             let (r, dr) = strip.node(node);
-            samples.extend(sample(turn, fixed, &(normals.at)(r), dr));
+            samples.extend(sample(turn, fixed, azimuth, &(normals.at)(r), dr));
         }
     }
 }
@@ -251,7 +252,9 @@ fn strips(turn: &Turn, fixed: &Fixed, tolerance: f64, normals: &Normals) -> Vec<
 }
 
 /// The direction that a normal of an azimuth reflects the fixed one to, and cos θ dω of it; none below the horizon.
-fn sample(turn: &Turn, fixed: &Fixed, normal: &Normal, dr: f64) -> Option<Sample> {
+///
+/// `azimuth_i` is the sine and the cosine of φi.
+fn sample(turn: &Turn, fixed: &Fixed, azimuth_i: [f64; 2], normal: &Normal, dr: f64) -> Option<Sample> {
     let Turn { sin: sin_turn, cos, t_max, weight: azimuth, .. } = *turn;
     let (mu, sin) = (fixed.mu, fixed.sin());
     let Normal { p, m, solid_angle } = *normal;
@@ -267,8 +270,9 @@ fn sample(turn: &Turn, fixed: &Fixed, normal: &Normal, dr: f64) -> Option<Sample
     if !(mu_e > 0.0 && solid_angle.is_finite()) {
         return None;
     }
-    let pair = Pair::of_cosines_and_sines([mu, mu_e], [sin, x_e.hypot(y_e)]);
-    let azimuth = Azimuth::at(fixed.phi, (-y_e).atan2(-x_e));
+    // Neither square leaves f64 but where sin θe is 0 to all digits.
+    let pair = Pair::of_cosines_and_sines([mu, mu_e], [sin, (x_e * x_e + y_e * y_e).sqrt()]);
+    let azimuth = Azimuth::of_sines_and_cosines(azimuth_i, [-y_e, -x_e]);
     Some(Sample { pair, azimuth, weight: 4.0 * projected * mu_e * solid_angle })
 }
 

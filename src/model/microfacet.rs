@@ -15,6 +15,7 @@ use crate::model::fresnel::none::Constant;
 use crate::model::fresnel::schlick::Schlick;
 use crate::model::fresnel::thin_film::ThinFilm;
 use crate::model::fresnel::{self, Fresnel, MEAN_NODES_UNKNOWN};
+use crate::model::half_vector::stretched::Facet;
 use crate::model::half_vector::{self, Kinks, adaptive, stretched};
 use crate::model::masking::ashikhmin_neubelt::AshikhminNeubelt;
 use crate::model::masking::disney_clearcoat::DisneyClearcoat;
@@ -71,6 +72,22 @@ pub struct Microfacet {
     pub(crate) seam: Option<f64>,
     /// How many more nodes in μ its mean over directions takes than Schlick's, at a tolerance.
     pub(crate) mean_nodes: fn(&Setting, f64) -> usize,
+    /// Its integrals as sums over facets, where that is quicker than over directions.
+    pub(crate) facets: Option<FacetSum>,
+}
+
+type VisitFacets =
+    fn(&directions::Fixed, &Setting, tolerance: f64, degree: Option<usize>, &mut dyn FnMut(Facet));
+
+/// Integrals of a lobe as sums over its facets, each F times the rest of the lobe.
+#[derive(Debug)]
+pub(crate) struct FacetSum {
+    /// Visits the facets that meet a tolerance; or those that integrate polynomials of a degree in F's place.
+    pub visit: VisitFacets,
+    /// F for c and 1 − c.
+    pub fresnel: fn(c: f64, x: f64, &Setting) -> [f64; 2],
+    /// The degree of the polynomial of c that F is within a tolerance, where F costs much.
+    pub degree: Option<fn(&Setting, tolerance: f64) -> usize>,
 }
 
 /// The parts there are: the default is the first of its kind, and an entry here is all that a new one takes.
@@ -282,6 +299,17 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
             Some(counts) => counts.mean_nodes,
             None => |_, _| MEAN_NODES_UNKNOWN,
         },
+        facets: match (Self::COUNTS, F::AS_POLYNOMIAL) {
+            (Some(_), polynomial) if N::AXES.is_some() && M::OF_NORMAL.is_none() => Some(FacetSum {
+                visit: Self::visit,
+                fresnel: F::fresnel,
+                degree: match polynomial {
+                    Some(polynomial) => Some(polynomial.degree),
+                    None => None,
+                },
+            }),
+            _ => None,
+        },
     };
 
     const PARTS: [Part; 4] = [
@@ -294,7 +322,9 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
     /// The node counts of all three, if all have them.
     const COUNTS: Option<(CountRule, masking::MaskingCounts, fresnel::FresnelCounts)> =
         match (N::RULE, M::COUNTS, F::COUNTS) {
-            (Some(ndf), Some(masking), Some(fresnel)) => Some((ndf, masking, fresnel)),
+            (Some(ndf), Some(masking), Some(fresnel)) if N::RULE_HOLDS_TURNS || !M::TURNS => {
+                Some((ndf, masking, fresnel))
+            }
             _ => None,
         };
 
@@ -383,6 +413,23 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
         }
     }
 
+    fn visit(
+        fixed: &directions::Fixed,
+        s: &Setting,
+        tolerance: f64,
+        degree: Option<usize>,
+        visit: &mut dyn FnMut(Facet),
+    ) {
+        let Some((rule, of_masking, _)) = Self::COUNTS else { return };
+        let counts = match (degree, F::AS_POLYNOMIAL) {
+            (Some(degree), Some(polynomial)) => {
+                (polynomial.counts)(of_masking((rule.counts)(fixed.mu, s, tolerance), tolerance), degree)
+            }
+            _ => Self::counts(fixed.mu, s, tolerance),
+        };
+        stretched::facets::<N, M>(fixed, s, counts, tolerance, visit);
+    }
+
     /// f μi / p of a normal that was drawn.
     fn estimate(draw: Option<Draw>, mu: f64, s: &Setting) -> [f64; 2] {
         let Some(Draw { x, t2, m, weight: [of_q, rest] }) = draw else { return [f64::NAN; 2] };
@@ -448,7 +495,7 @@ impl<N: Ndf, M: Masking> Facets<N, M> {
         let with = |alpha: f64| Setting { alpha, ..*setting };
         let toward = |mu: f64, cos: f64, sin: f64| Toward {
             mu,
-            setting: axes.map_or(*setting, |[x, y]| with((x * cos).hypot(y * sin))),
+            setting: axes.map_or(*setting, |[x, y]| with(((x * cos).powi(2) + (y * sin).powi(2)).sqrt())),
         };
         let shared = M::visibility::<N>(&toward(p.mu_i, cp + cm, sp + sm), &toward(p.mu_e, cp - cm, sp - sm));
         let d = match axes {
@@ -513,6 +560,7 @@ mod tests {
     use crate::model::slope_azimuths::side;
     use rayon::prelude::*;
     use std::collections::BTreeSet;
+    use std::f64::consts::FRAC_PI_2;
 
     /// Names are keys of pipelines, words of recipes and parts of file names.
     #[test]
@@ -592,12 +640,85 @@ mod tests {
         all
     }
 
+    /// The largest ρ that a model reaches: over its parameters' extremes, α, μ and azimuths.
+    fn largest_rho(model: &Model) -> (f64, String) {
+        let map = match model.integral {
+            Integral::Slopes(slopes) => slopes.map,
+            Integral::Mapped(map) => map,
+            _ => return (0.0, String::new()),
+        };
+        let mut cases = Vec::new();
+        let shape = model.shape.unwrap();
+        for parameters in extremes(model) {
+            let (alphas, mus) = match crate::base::is_thorough() {
+                true => (
+                    &[1.0, 0.9, 0.7, 0.5, 0.3, 0.1, 0.03, 0.01, 1e-3][..],
+                    &[MU_MIN, 1e-4, 1e-2, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.0][..],
+                ),
+                false => (&[1.0, 0.3][..], &[MU_MIN, 1e-2, 0.3, 1.0][..]),
+            };
+            for &alpha in alphas {
+                let setting = Setting { alpha: shape.measure(f64::sqrt(alpha)), parameters };
+                for &mu in mus {
+                    let phis: &[f64] = if model.is_anisotropic() {
+                        &[0.0, 0.02, 0.1, 0.4, 0.8, 1.2, 1.5, FRAC_PI_2]
+                    } else {
+                        &[0.0]
+                    };
+                    cases.extend(phis.iter().map(|&phi| (setting, mu, phi)));
+                }
+            }
+        }
+        let rho = |(s, mu, phi): &(Setting, f64, f64)| {
+            let fixed = directions::Fixed { mu: *mu, phi: *phi, factored: false, kinks: Vec::new() };
+            let rho = (map.limit)(*mu, s).unwrap_or_else(|| {
+                (map.samples)(&fixed, s, 1e-3).iter().fold([0.0; 2], |sum, sample| {
+                    let f = (model.lobe)(&sample.pair, &sample.azimuth, s);
+                    [sum[0] + sample.weight * f[0], sum[1] + sample.weight * f[1]]
+                })
+            });
+            (rho[0] + rho[1], format!("μ = {mu}, φ = {phi}, {s:?}"))
+        };
+        cases.par_iter().map(rho).reduce(|| (0.0, String::new()), |a, b| if b.0 > a.0 { b } else { a })
+    }
+
+    /// No masking makes more light than its model declares.
+    #[test]
+    #[ignore = "takes minutes"]
+    fn declared_bounds_are_true() {
+        bounds_are_true(|_| true);
+    }
+
+    /// Cloth's visibility masks nothing of what leans far: along grooves of αx = 10, stretched GGX reflects 5.
+    #[test]
+    fn declared_bounds_of_stretched_cloth_are_true() {
+        bounds_are_true(|model| {
+            let parts = model.microfacet.unwrap();
+            model.is_anisotropic()
+                && parts.masking.as_ref().is_some_and(|masking| masking.name == "ashikhmin-neubelt")
+        });
+    }
+
+    fn bounds_are_true(is_meant: impl Fn(&Model) -> bool) {
+        let mut broken = Vec::new();
+        let plain = |model: &&Model| model.microfacet.unwrap().fresnel.name == "none";
+        for model in MICROFACETS.iter().filter(plain).filter(|model| is_meant(model)) {
+            let (rho, place) = largest_rho(model);
+            println!("{}: {rho:.4} of {:.4} at {place}", model.name, model.rho_bound);
+            if rho > model.rho_bound * (1.0 + 2e-3) {
+                broken.push(format!("{}: {rho} of {} at {place}", model.name, model.rho_bound));
+            }
+        }
+        assert!(broken.is_empty(), "{broken:#?}");
+    }
+
     /// The error model was made for correlated heights and Schlick: the others keep the tolerances by what they
     /// add to it. Without `near`, separable Smith is off by 1.3 times 1e-5 and 1.7 times 1e-6.
     #[test]
     fn the_error_model_holds_for_every_combination() {
         let mut failed = Vec::new();
-        for model in MICROFACETS.iter() {
+        let thorough = crate::base::is_thorough();
+        for (place, model) in MICROFACETS.iter().enumerate() {
             let Integral::Slopes(slopes) = model.integral else { continue };
             let rule = |mu: f64, s: &Setting, tolerance: f64, counts: [SlopeCounts; 2]| {
                 let map = slopes.map(tolerance);
@@ -629,9 +750,10 @@ mod tests {
             let telling =
                 model.terms().iter().filter(|(_, there, own)| own.name != there[0].name).count() < 2;
             let count = match (film, telling) {
+                _ if !telling && !thorough && place % 8 != 0 => continue,
                 (true, true) => 5,
                 (true, false) => 1,
-                (false, true) => 120 / extremes.len().min(6),
+                (false, true) => (if thorough { 120 } else { 40 }) / extremes.len().min(6),
                 (false, false) => 4,
             };
             let worst: Vec<[f64; 9]> = (0..count * extremes.len())

@@ -51,6 +51,7 @@ impl<F: Fresnel> MirrorOf<F> {
         metals: F::METALS,
         refused: F::refused,
         is_counted: true,
+        facets: None,
         mean_nodes: match F::COUNTS {
             Some(counts) => counts.mean_nodes,
             None => |_, _| MEAN_NODES_UNKNOWN,

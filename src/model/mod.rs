@@ -23,6 +23,9 @@ pub(crate) mod slope_azimuths;
 #[cfg(test)]
 pub(crate) mod truth;
 
+pub(crate) use half_vector::stretched::Facet;
+pub(crate) use microfacet::FacetSum;
+
 pub use builder::{ModelBuilder, Twin};
 pub use fresnel::metals::{METALS, Metal};
 pub use microfacet::{FRESNELS, MASKINGS, MICROFACETS, MIRRORS, Microfacet};

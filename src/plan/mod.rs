@@ -5,7 +5,7 @@ mod unmeasured;
 
 use crate::base::error::{Error, Result};
 use crate::base::precision::{INTEGRAL_F32, Precision, VALUE_F32};
-use crate::base::tolerance::{RULE_SHARE, Tolerance, UNORM_RULE};
+use crate::base::tolerance::{LEAST_BEFORE_STORAGE, RULE_SHARE, Tolerance, UNORM_RULE};
 use crate::model::compensation::{Compensation, Factor};
 use crate::model::lobe::Lobe;
 use crate::model::parameters::Parameters;
@@ -273,6 +273,24 @@ impl TablePlan {
         self.decisions.rule_tolerance
     }
 
+    /// The tolerance that rounding to storage leaves to integrals: a hundredth at least, as values may round by less than
+    /// their bound.
+    pub(crate) fn tolerance_before_storage(&self) -> f64 {
+        let tolerance = self.tolerance.get();
+        (tolerance - self.storage.coarse_rounding(self.rho_bound())).max(LEAST_BEFORE_STORAGE * tolerance)
+    }
+
+    /// The bound on what the table's lobes reflect together.
+    pub(crate) fn rho_bound(&self) -> f64 {
+        // A lobe of multiple scattering makes up for the loss of another lobe, whose bound covers both.
+        let compensates = |lobe: &Lobe| lobe.factors().iter().any(Factor::is_missing);
+        let alone = self.lobes.iter().all(compensates);
+        let bound = |lobe: &Lobe| {
+            lobe.weights().as_flattened().iter().copied().fold(0.0, f64::max) * lobe.rho_bound()
+        };
+        self.lobes.iter().filter(|lobe| alone || !compensates(lobe)).map(bound).sum()
+    }
+
     /// The least precision that meets the tolerance: f32 has a floor, of some hundred roundings in an integral and of
     /// [`VALUE_F32`] in a value.
     pub fn precision(&self) -> Precision {
@@ -291,7 +309,7 @@ impl TablePlan {
         let precision = if tolerance < floor { Precision::F64 } else { Precision::F32 };
         let rule_tolerance = match self.storage {
             Storage::Unorm16 => (RULE_SHARE * tolerance).min(UNORM_RULE),
-            Storage::F16 => RULE_SHARE * tolerance,
+            Storage::F16 => (RULE_SHARE * tolerance).min(self.tolerance_before_storage()),
             _ if self.bilinear.is_some() => RULE_SHARE * tolerance,
             _ => tolerance,
         };

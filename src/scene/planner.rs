@@ -101,7 +101,7 @@ pub struct Selection {
     pub material: Option<String>,
     /// Only this quantity.
     pub quantity: Option<String>,
-    /// In place of the scene's tolerance.
+    /// In place of the tolerances of the scene and of its tables.
     pub tolerance: Option<f64>,
 }
 
@@ -127,8 +127,7 @@ impl Plan {
     /// When the selection names what is not there, or a requested table cannot be baked.
     pub fn new(scene: &Scene, selection: &Selection) -> Result<Self> {
         let quantity = selection.quantity.as_deref().map(quantity::find).transpose()?;
-        let asked = selection.tolerance.or(scene.tolerance);
-        let tolerance = asked.unwrap_or(Tolerance::DEFAULT.get());
+        let tolerance = selection.tolerance.or(scene.tolerance).unwrap_or(Tolerance::DEFAULT.get());
         let materials: Vec<_> = match &selection.material {
             Some(name) => vec![scene.material(name)?],
             None => scene.materials.iter().collect(),
@@ -163,8 +162,8 @@ impl Plan {
                     (_, None) => true,
                 };
                 if wanted {
-                    let mut table =
-                        requested(request, scene, &by_name, asked).map_err(|e| e.at(&request.place))?;
+                    let mut table = requested(request, scene, &by_name, selection.tolerance)
+                        .map_err(|e| e.at(&request.place))?;
                     if request.name.is_none() {
                         let name = names.take(table.name());
                         table = table.with_name(name);
@@ -490,12 +489,13 @@ fn default_tolerance(storage: Option<Storage>) -> f64 {
     if storage == Some(Storage::F16) { HALF_TOLERANCE } else { Tolerance::DEFAULT.get() }
 }
 
-/// A table that a recipe asks for.
+/// A table that a recipe asks for. A tolerance of the selection, as of the command line, wins over the table's own, and that
+/// over the recipe's.
 fn requested(
     request: &TableRequest,
     scene: &Scene,
     by_name: &HashMap<&str, &Material>,
-    tolerance: Option<f64>,
+    selected: Option<f64>,
 ) -> Result<TablePlan> {
     let material = |name: &str| by_name.get(name).copied().map_or_else(|| scene.material(name), Ok);
     let quantity = quantity::find(&request.quantity)?;
@@ -522,7 +522,7 @@ fn requested(
         SubjectRequest::Material(subject) => table_of(name(subject), quantity, material(subject)?, axes)?,
     };
     let table = table.with_rule(request.rule.unwrap_or(Rule::Warped))?;
-    let tolerance = request.tolerance.or(tolerance);
+    let tolerance = selected.or(request.tolerance).or(scene.tolerance);
     let table = table.with_tolerance(tolerance.unwrap_or_else(|| default_tolerance(request.storage)))?;
     if request.auto.is_empty() {
         return table.with_storage(request.storage.unwrap_or_default());

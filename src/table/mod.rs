@@ -18,7 +18,6 @@ use crate::table::storage::Storage;
 use serde::Serialize;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::fmt::Display;
 
 /// A baked table: `quantity × axes × subject`, row-major, the channels last.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,8 +68,13 @@ pub struct TableError {
     /// Relative errors are |x − f| / max(f, floor); in the table's unit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub floor: Option<f64>,
-    /// The error that the rule promises a priori, where it promises one.
+    /// The bound on the error of the stored values, where there is one: of integrals the difference of two rules and what the
+    /// finer of them promises, or without a check what the rule promises; of values the budget of the arithmetic. It
+    /// includes `rounding`.
     pub estimate: Option<f64>,
+    /// The largest rounding to a 16-bit storage format.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rounding: Option<f64>,
     /// The largest difference found; `None` when nothing was checked.
     pub measured_max: Option<f64>,
     /// The root mean square of the differences found.
@@ -96,6 +100,7 @@ impl TableError {
             kind,
             floor,
             estimate,
+            rounding: None,
             measured_max: None,
             measured_rms: None,
             texels_checked: 0,
@@ -184,8 +189,8 @@ impl Values {
             match (&mut *self, other) {
                 (Self::F32(to), Self::F32(from)) => to[range.clone()].copy_from_slice(&from[range]),
                 (Self::F64(to), Self::F64(from)) => to[range.clone()].copy_from_slice(&from[range]),
-                // One path computes in one precision.
-                _ => {}
+                (Self::F32(to), Self::F64(from)) => range.for_each(|k| to[k] = from[k] as f32),
+                (Self::F64(to), Self::F32(from)) => range.for_each(|k| to[k] = f64::from(from[k])),
             }
         }
         replacement
@@ -256,7 +261,7 @@ impl Table {
     /// Refuses impossible values as [`check_sane`](Self::check_sane) does, among values that begin at `texel`.
     pub(crate) fn check_sane_from<T>(&self, texel: usize, values: &[T]) -> Result<()>
     where
-        T: Copy + Into<f64> + Display,
+        T: Copy + Into<f64>,
     {
         let channels = self.channels.len();
         let Some(index) = values.iter().position(|&value| !self.quantity.allows(value.into())) else {
@@ -265,7 +270,7 @@ impl Table {
         Err(Error::Promise(format!(
             "table {}: {} at {}; {}",
             self.name,
-            values[index],
+            in_digits(values[index].into()),
             self.coordinates(texel + index / channels),
             self.quantity.allowed(),
         )))
@@ -278,6 +283,14 @@ impl Table {
             .map(|(axis, k)| format!("{} = {}", axis.variable().name(), axis.values()[k]))
             .collect();
         words.join(", ")
+    }
+}
+
+/// A number in few characters: with an exponent where it has many zeros.
+fn in_digits(value: f64) -> String {
+    match value.abs() {
+        x if x == 0.0 || (1e-3..1e6).contains(&x) || !x.is_finite() => value.to_string(),
+        _ => format!("{value:e}"),
     }
 }
 
@@ -294,6 +307,12 @@ pub fn indices(shape: &[usize], mut flat: usize) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn tiny_numbers_have_an_exponent() {
+        let printed = [-1.5e-30, 0.25, -3.0, 0.0, f64::NAN, 1e-4].map(in_digits);
+        assert_eq!(printed, ["-1.5e-30", "0.25", "-3", "0", "NaN", "1e-4"]);
+    }
 
     #[test]
     fn only_texels_that_differ_too_much_are_replaced() {

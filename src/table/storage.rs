@@ -23,6 +23,8 @@ pub enum Storage {
 pub(crate) struct Stored {
     pub values: Values,
     pub underflows: usize,
+    /// The bound on the rounding of the values, absolute or relative; of 16-bit formats the largest there is.
+    pub rounding: f64,
 }
 
 impl Storage {
@@ -62,9 +64,16 @@ impl Storage {
         }
     }
 
-    /// The bound on the rounding error of 16-bit formats, else 0: the arithmetic's error is measured with rounding to f32.
-    pub(crate) fn coarse_rounding(self, kind: ErrorKind) -> f64 {
-        if self.bytes() < Self::F32.bytes() { self.rounding(kind) } else { 0.0 }
+    /// The bound on the absolute rounding error of integrals up to `largest` in 16-bit formats; else 0, as the arithmetic's
+    /// error is measured with rounding to f32.
+    pub(crate) fn coarse_rounding(self, largest: f64) -> f64 {
+        let rounding = self.rounding(ErrorKind::Absolute);
+        match self {
+            // The spacing of halves doubles at each power of two.
+            Self::F16 if largest > 1.0 => rounding * 2f64.powf(largest.log2().floor() + 1.0),
+            Self::F16 | Self::Unorm16 => rounding,
+            Self::F32 | Self::F64 => 0.0,
+        }
     }
 
     /// The value that a reader of the stored one gets; infinite or out of [0, 1] where it does not fit.
@@ -104,12 +113,22 @@ impl Storage {
                 refuse(count(&outside), "are outside [0, 1], which is all that unorm16 has")?;
             }
         }
+        let mut rounding = if self.bytes() < Self::F32.bytes() { 0.0 } else { self.rounding(kind) };
         let values = match (self, values) {
             (Self::F64, values) => Values::F64(values.iter().collect()),
             (Self::F32, values) => Values::F32(values.to_f32().into_owned()),
-            (_, values) => Values::F32(values.iter().map(|value| self.round(value) as f32).collect()),
+            (_, values) => {
+                let round = |value: f64| {
+                    let stored = self.round(value);
+                    let unit =
+                        if kind == ErrorKind::Absolute { 1.0 } else { value.abs().max(f64::MIN_POSITIVE) };
+                    rounding = f64::max(rounding, (stored - value).abs() / unit);
+                    stored as f32
+                };
+                Values::F32(values.iter().map(round).collect())
+            }
         };
-        Ok(Stored { values, underflows })
+        Ok(Stored { values, underflows, rounding })
     }
 }
 

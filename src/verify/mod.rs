@@ -25,6 +25,7 @@ mod albedo;
 mod bits;
 mod energy;
 mod inputs;
+mod limits;
 mod probe;
 mod reciprocity;
 mod report;
@@ -180,6 +181,11 @@ pub trait Subject {
         true
     }
 
+    /// Why its last values are not its own: a driver stopped it before it was through. Nothing is judged by them.
+    fn cut_short(&self) -> Option<String> {
+        None
+    }
+
     /// What cannot be looked at, and why.
     fn notes(&self) -> Vec<String> {
         Vec::new()
@@ -282,10 +288,25 @@ trait Property {
 /// When the subject cannot be evaluated, or the observer stops it; a broken promise is no error but a
 /// [`Finding`] of the report.
 pub fn check(subject: &mut dyn Subject, options: &VerifyOptions, observer: &dyn Observer) -> Result<Report> {
-    let (symmetry, tolerances) = (subject.symmetry(), subject.tolerances());
-    let declared = subject.declared().to_vec();
-    let mut probe = Probe::new(subject);
+    match judge(subject, options, observer) {
+        Err(error) => match subject.cut_short() {
+            Some(why) => Ok(unchecked(subject, &why)),
+            None => Err(error),
+        },
+        report => report,
+    }
+}
 
+/// The report of a subject whose values are not its own.
+fn unchecked(subject: &mut dyn Subject, why: &str) -> Report {
+    let names = properties(&Probe::new(subject)).iter().map(|property| property.name()).collect::<Vec<_>>();
+    let findings = names.into_iter().chain(["energy"]).map(|property| Finding::unchecked(property, why));
+    Report { subject: subject.name(), evaluated: 0, findings: findings.collect(), notes: Vec::new() }
+}
+
+/// The promises about single inputs that a subject makes.
+fn properties(probe: &Probe) -> Vec<Box<dyn Property>> {
+    let (symmetry, tolerances) = (probe.subject.symmetry(), probe.subject.tolerances());
     let mut properties: Vec<Box<dyn Property>> = vec![
         Box::new(bits::Finite),
         Box::new(bits::NonNegative),
@@ -303,6 +324,14 @@ pub fn check(subject: &mut dyn Subject, options: &VerifyOptions, observer: &dyn 
     if !probe.has_values() {
         properties.clear();
     }
+    properties
+}
+
+fn judge(subject: &mut dyn Subject, options: &VerifyOptions, observer: &dyn Observer) -> Result<Report> {
+    let tolerances = subject.tolerances();
+    let declared = subject.declared().to_vec();
+    let mut probe = Probe::new(subject);
+    let mut properties = properties(&probe);
 
     // Half of the values go to the integrals unless the subject does them, the rest to each promise alike.
     let values = if probe.has_integrals()? { options.budget } else { options.budget / 2 };

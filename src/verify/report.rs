@@ -51,6 +51,8 @@ pub enum Verdict {
     Declared,
     /// Broken; or declared broken, and found beyond the bound or kept.
     Broken,
+    /// Not judged, as the device does not run the subject to its end.
+    Unchecked,
 }
 
 /// An input, in the words of `gonio eval`.
@@ -98,6 +100,21 @@ impl Finding {
         }
     }
 
+    /// A promise that is not judged.
+    pub(super) fn unchecked(property: &'static str, why: &str) -> Self {
+        let (verdict, said) = (Verdict::Unchecked, format!("not checked: {why}"));
+        Self {
+            property,
+            verdict,
+            deviation: None,
+            limit: 0.0,
+            said,
+            input: None,
+            values: Vec::new(),
+            note: None,
+        }
+    }
+
     /// Notes f at the worst input.
     pub(super) fn evaluate(&mut self, subject: &mut dyn Subject) -> Result<()> {
         let Some(input) = &self.input else { return Ok(()) };
@@ -137,9 +154,9 @@ pub(super) fn hold(findings: &mut [Finding], declared: &Declared, shows: bool) -
 }
 
 impl Report {
-    /// Whether every promise is kept, or broken as declared.
+    /// Whether every promise is kept, or broken as declared. One that is not checked is not kept.
     pub fn is_kept(&self) -> bool {
-        self.findings.iter().all(|finding| finding.verdict != Verdict::Broken)
+        self.findings.iter().all(|finding| matches!(finding.verdict, Verdict::Kept | Verdict::Declared))
     }
 
     /// A promise's finding.

@@ -451,6 +451,7 @@ fn table(name: &str, axes: Vec<Axis>, channels: &[&str], f: impl Fn(&[f64]) -> f
             kind: ErrorKind::Relative,
             floor: Some(1e-6),
             estimate: Some(1e-5),
+            rounding: None,
             measured_max: Some(3e-7),
             measured_rms: Some(1e-7),
             texels_checked: 256,

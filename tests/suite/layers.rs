@@ -16,7 +16,7 @@ const LAYERS: [&[&str]; 11] = [
     &["check"],
     &["bake"],
     &["scene", "io", "light", "verify", "batch"],
-    &["cli", "figure", "lab"],
+    &["cli", "figure", "lab", "fuzz"],
 ];
 
 /// `from` uses `to`, in a file.

@@ -47,9 +47,12 @@ mod shaders;
 #[cfg(feature = "cli")]
 mod storage;
 mod stream;
+#[cfg(feature = "cli")]
+mod supply_chain;
 #[cfg(feature = "scene")]
 mod textures;
 mod thin_film;
+mod thousand;
 mod trade;
 mod truth;
 mod values;

@@ -132,11 +132,13 @@ const NORMALS: [Promise; 8] = [
 ];
 
 /// The energy with other maskings, where it is not 1: measured at the worst α where one direction grazes.
-const ENERGY: [(&str, &str, f64); 22] = [
+const ENERGY: [(&str, &str, f64); 24] = [
     ("ggx", "disney-clearcoat", 3.438),
     ("beckmann", "disney-clearcoat", 2.181),
     ("ggx-anisotropic", "disney-clearcoat", 22.56),
     ("beckmann-anisotropic", "disney-clearcoat", 18.3),
+    ("ggx-anisotropic", "ashikhmin-neubelt", 5.0),
+    ("beckmann-anisotropic", "ashikhmin-neubelt", 2.821),
     ("gtr", "smith-separable", 144.63),
     ("gtr", "schlick-ggx", 144.63),
     ("gtr", "disney-clearcoat", 3.438),

@@ -142,7 +142,7 @@ impl Anisotropic {
 
     /// The integral over r = sinh v at an azimuth χ: per unit of v, D changes by a bounded factor.
     fn slice(&self, tolerance: f64, mu: f64, towards: [f64; 2], chi: f64, setting: &Setting) -> [f64; 2] {
-        let axes @ [x, y] = axes(setting);
+        let [x, y] = axes(setting);
         let (sin_chi, cos_chi) = chi.sin_cos();
         let e = [x * cos_chi, y * sin_chi];
         // α along p, as 1/α² = cos²φm/αx² + sin²φm/αy².
@@ -150,8 +150,11 @@ impl Anisotropic {
         let sin = sin_of(mu);
         let wo = DVec3::new(sin * towards[0], sin * towards[1], mu);
         let lambda = |w: DVec3| {
-            let tan2 = (w.x * w.x + w.y * w.y) / (w.z * w.z);
-            let alpha = alpha_towards(axes, w.y.atan2(w.x));
+            let sin2 = w.x * w.x + w.y * w.y;
+            let tan2 = sin2 / (w.z * w.z);
+            // Eq. 80, by the components of w in place of its azimuth, of which the normal has none.
+            let seen = (x * w.x).powi(2) + (y * w.y).powi(2);
+            let alpha = if sin2 > 0.0 { (seen / sin2).sqrt() } else { x };
             (self.ndf.lambda(tan2, alpha, &setting.parameters), alpha)
         };
         let (lambda_o, alpha_o) = lambda(wo);

@@ -188,12 +188,20 @@ impl Baker {
     /// again into the same buffer.
     ///
     /// # Errors
-    /// When the table does not fit one binding of the device, or takes loops that not every driver runs.
+    /// When f32 cannot meet the table's tolerance, it does not fit one binding of the device, or it takes loops that not every
+    /// driver runs.
     pub fn prepare(&self, table: &TablePlan) -> Result<Prepared> {
         self.scoped(|| self.prepare_unguarded(table))
     }
 
     fn prepare_unguarded(&self, table: &TablePlan) -> Result<Prepared> {
+        if table.precision() == Precision::F64 {
+            return Err(Error::input(format!(
+                "table \"{}\": f32, in which a device records tables, cannot meet {:e}; allow more, or bake it by an Evaluator",
+                table.name(),
+                table.tolerance()
+            )));
+        }
         let layout = ResultLayout::new(table, Precision::F32);
         let dispatches = self.dispatches(table, Precision::F32, || Ok(SAFE_TURNS))?;
         let raw = dispatches.iter().map(Dispatches::raw_bytes_per_unit).max().unwrap_or(0) * layout.units;

@@ -73,6 +73,7 @@ fn slopes(rule: &SlopeRule) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::tolerance::is_fine;
     use crate::model;
     use crate::model::Integral;
     use crate::table::axis::{Axis, Variable};
@@ -86,12 +87,13 @@ mod tests {
         const STRICTEST: u32 = 65_535;
         let mut failed = Vec::new();
         for model in model::all().filter(|model| !matches!(model.integral, Integral::Unbounded(_))) {
-            for tolerance in (1..=10).map(|decade| 10f64.powi(-decade)) {
+            let (decades, count) = if crate::base::is_thorough() { (1..=10, 96) } else { (6..=10, 24) };
+            for tolerance in decades.map(|decade| 10f64.powi(-decade)) {
                 for quantity in [&RHO_DH, &RHO_HH] {
-                    let rough = model.shape.map(|_| Axis::natural(Variable::Roughness, 96).unwrap());
+                    let rough = model.shape.map(|_| Axis::natural(Variable::Roughness, count).unwrap());
                     let about = quantity.variables(model.is_anisotropic());
                     let axis = |&variable: &Variable| {
-                        let count = if variable == Variable::PhiI { 3 } else { 96 };
+                        let count = if variable == Variable::PhiI { 3 } else { count };
                         Axis::natural(variable, count).unwrap()
                     };
                     let axes = rough.into_iter().chain(about.iter().map(axis)).collect();
@@ -100,7 +102,7 @@ mod tests {
                     let turns = turns(&RuleSet::new(&plan, &plan.lobes()[0]));
                     let limit = match model.integral {
                         // A table that takes more is refused where that is not known to run.
-                        Integral::Mapped(_) if tolerance < 0.9e-6 => u32::MAX,
+                        Integral::Mapped(_) if is_fine(tolerance) => u32::MAX,
                         Integral::Mapped(_) if model.is_anisotropic() && tolerance < 0.9e-5 => u32::MAX,
                         Integral::Mapped(_) => STRICTEST,
                         _ if tolerance > 0.9e-8 => SAFE_TURNS,

@@ -85,16 +85,22 @@ impl Target {
 
         let values = values(&table, &axes, &channels);
         let refuse = |why| Error::input(format!("table {}: target {}: {why}", table.name, self.name));
-        let Stored { values, underflows } = match storage == table.storage && channels_are_copies(&channels) {
-            true => Stored { values, underflows: table.error.underflows.unwrap_or(0) },
-            false => storage.store(values, table.error.kind).map_err(refuse)?,
-        };
+        let Stored { values, underflows, rounding } =
+            match storage == table.storage && channels_are_copies(&channels) {
+                true => Stored {
+                    values,
+                    underflows: table.error.underflows.unwrap_or(0),
+                    rounding: table.error.rounding.unwrap_or(0.0),
+                },
+                false => storage.store(values, table.error.kind).map_err(refuse)?,
+            };
         let keeps_values = storage == table.storage && channels_are_a_permutation(&channels, &table);
         let mut error = match keeps_values {
             true => permuted(&table.error, &channels),
-            false => bounded(&table.error, &channels, storage),
+            false => bounded(&table.error, &channels, rounding),
         };
         error.underflows = (storage == Storage::F16).then_some(underflows);
+        error.rounding = (storage.bytes() < Storage::F32.bytes()).then_some(rounding);
         Ok(Table {
             axes: axes.iter().map(|&(k, flipped)| oriented(&table.axes[k], flipped)).collect(),
             channels: channels.iter().map(|channel| channel.name.clone()).collect(),
@@ -232,11 +238,11 @@ fn permuted(error: &TableError, channels: &[ChannelSum]) -> TableError {
 
 /// What bounds the error of sums of channels that are rounded again: |Σ f x − Σ f x̃| ≤ Σ |f| · max |x − x̃|, and the
 /// rounding. Relative errors of sums have no such bound, as their terms may cancel.
-fn bounded(error: &TableError, channels: &[ChannelSum], storage: Storage) -> TableError {
+fn bounded(error: &TableError, channels: &[ChannelSum], rounding: f64) -> TableError {
     let factors = |channel: &ChannelSum| channel.terms.iter().map(|(_, factor)| factor.abs()).sum::<f64>();
     let largest = channels.iter().map(factors).fold(0.0, f64::max);
     let known = error.estimate.into_iter().chain(error.measured_max).reduce(f64::max);
-    let bound = known.map(|known| largest * known + storage.rounding(error.kind));
+    let bound = known.map(|known| largest * known + rounding);
     TableError::unmeasured(error.kind, error.floor, bound.filter(|_| error.kind == ErrorKind::Absolute))
 }
 

@@ -30,6 +30,8 @@ pub(crate) trait Fresnel {
     /// Whether it is a polynomial of c with coefficients of no more than some ones: it then leaves ρ as analytic as the
     /// NDF does, and tables may be spread from few integrals.
     const POLYNOMIAL: bool = false;
+    /// The same within a tolerance, where F costs so much that integrals of stretched lobes share what does not depend on it.
+    const AS_POLYNOMIAL: Option<AsPolynomial> = None;
     /// Its parameters, in places 4 to 7.
     const PARAMETERS: &'static [Parameter] = &[];
     /// The most that F is.
@@ -57,6 +59,15 @@ pub(crate) struct FresnelCounts {
     pub far: fn(schlick: SlopeCounts, &Setting, tolerance: f64) -> SlopeCounts,
     /// How many more nodes in μ its mean over directions takes than Schlick's.
     pub mean_nodes: fn(&Setting, tolerance: f64) -> usize,
+}
+
+/// F as a polynomial of c within a tolerance.
+pub(crate) struct AsPolynomial {
+    /// Its degree.
+    pub degree: fn(&Setting, tolerance: f64) -> usize,
+    /// Node counts of stretched lobes where cos φ > 0 and where it is < 0, for polynomials of a degree, given those of
+    /// Schlick's term.
+    pub counts: fn(schlick: [SlopeCounts; 2], degree: usize) -> [SlopeCounts; 2],
 }
 
 impl FresnelCounts {

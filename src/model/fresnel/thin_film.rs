@@ -41,7 +41,7 @@
 //! where F of the red channel dips through 0, finer ones are not kept. Values: see `FILM_F32`.
 
 use crate::base::tolerance::decade;
-use crate::model::fresnel::{Fresnel, FresnelCounts};
+use crate::model::fresnel::{AsPolynomial, Fresnel, FresnelCounts};
 use crate::model::parameters::{Parameters, Setting};
 use crate::model::{Component, Parameter, SlopeCounts, Term, part};
 use std::cell::Cell;
@@ -67,9 +67,17 @@ impl Fresnel for ThinFilm {
     /// On the far side ωi·ωm keeps away from 0, where F changes the most. In √μ, F has twice its degree, for which so many
     /// nodes are exact.
     const COUNTS: Option<FresnelCounts> = Some(FresnelCounts {
-        near: |schlick, s, tolerance| more(schlick, s, tolerance, SlopeCounts { azimuths: 110, nodes: 150 }),
-        far: |schlick, s, tolerance| more(schlick, s, tolerance, SlopeCounts { azimuths: 30, nodes: 40 }),
+        near: |schlick, s, tolerance| more(schlick, degree(s, tolerance), NEAR),
+        far: |schlick, s, tolerance| more(schlick, degree(s, tolerance), FAR),
         mean_nodes: degree,
+    });
+    const AS_POLYNOMIAL: Option<AsPolynomial> = Some(AsPolynomial {
+        degree,
+        // Measured for stretched lobes (`tolerances_are_kept` in `fresnel_series.rs`): azimuths need no more, and 0.2 of
+        // the degree are 1.6 times a tolerance off.
+        counts: |schlick, degree| {
+            schlick.map(|s| SlopeCounts { nodes: s.nodes + (2 * degree).div_ceil(5), ..s })
+        },
     });
     const PARAMETERS: &'static [Parameter] = &[
         Parameter {
@@ -144,11 +152,14 @@ impl Fresnel for ThinFilm {
     }
 }
 
+/// The most that F takes beyond Schlick's where cos φ > 0, and where it is < 0.
+const NEAR: SlopeCounts = SlopeCounts { azimuths: 110, nodes: 150 };
+const FAR: SlopeCounts = SlopeCounts { azimuths: 30, nodes: 40 };
+
 /// What F takes beyond Schlick's, by its degree in c. Measured over all parameters: shares of the degree, and not more
 /// than `most`, as what turns sharply in c is averaged over azimuths. In sixteens, so that few rules differ.
-fn more(schlick: SlopeCounts, s: &Setting, tolerance: f64, most: SlopeCounts) -> SlopeCounts {
-    let degree = degree(s, tolerance) as f64;
-    let share = |of: f64, most: usize| ((of * degree) as usize).min(most);
+fn more(schlick: SlopeCounts, degree: usize, most: SlopeCounts) -> SlopeCounts {
+    let share = |of: f64, most: usize| ((of * degree as f64) as usize).min(most);
     SlopeCounts {
         azimuths: schlick.azimuths + share(0.6, most.azimuths),
         nodes: (schlick.nodes + share(0.8, most.nodes)).next_multiple_of(16),

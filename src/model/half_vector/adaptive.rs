@@ -12,7 +12,7 @@
 use crate::base::cubature::{CubatureCell, EVALUATIONS, Measured, kronrod, refine};
 use crate::base::half_angle::{Azimuth, Half, Pair};
 use crate::base::quadrature::{Node, gauss_legendre};
-use crate::base::tolerance::is_fine;
+use crate::base::tolerance::{decade, is_fine};
 use crate::model::directions::{Fixed, Sample};
 use crate::model::half_vector::stretched::panels;
 use crate::model::half_vector::{Kinks, Normal, Normals, Strip, normal, sample, strips};
@@ -73,6 +73,7 @@ pub(crate) fn samples<N: Ndf>(
         })
         .collect();
     let rectangles = start.iter().enumerate().flat_map(|(k, chart)| chart.rectangles(k)).collect();
+    let azimuth_i: [f64; 2] = fixed.phi.sin_cos().into();
     // Factors that the lobe is multiplied with turn where μ ~ α, too.
     let turns_at = s.alpha.max(tolerance);
     let cells = refine(rectangles, 0.25 * tolerance, most(tolerance), |rectangle| {
@@ -86,7 +87,8 @@ pub(crate) fn samples<N: Ndf>(
             let Some(strip) = strips(&turn, &s).into_iter().nth(chart.strip) else { continue };
             for node in &along {
                 let (r, dr) = strip.node(&node.node);
-                let Some(sample) = sample(&turn, fixed, &normal_at::<N>(r, &s, median), dr) else { continue };
+                let normal = normal_at::<N>(r, &s, median);
+                let Some(sample) = sample(&turn, fixed, azimuth_i, &normal, dr) else { continue };
                 let [a, b] = lobe(&sample.pair, &sample.azimuth).map(|f| f * sample.weight);
                 let factor =
                     if fixed.factored { sample.pair.mu_e / (sample.pair.mu_e + turns_at) } else { 0.0 };
@@ -231,7 +233,7 @@ pub(crate) fn mean(tolerance: f64) -> Vec<Node> {
     const RATIO: f64 = 4.0;
     let count = if is_fine(tolerance) {
         10
-    } else if tolerance < 0.9e-3 {
+    } else if decade(tolerance) > decade(1e-3) {
         8
     } else {
         5

@@ -5,9 +5,9 @@
 use crate::base::quadrature::{Node, gauss_legendre};
 use crate::model::SlopeCounts;
 use crate::model::directions::{Fixed, Sample};
-use crate::model::half_vector::{Kinks, Normals, along, normal};
-use crate::model::masking::Masking;
-use crate::model::ndf::{Coordinate, Ndf};
+use crate::model::half_vector::{Kinks, Normal, Normals, along, normal, strips};
+use crate::model::masking::{Masking, Toward};
+use crate::model::ndf::{Coordinate, MappedSlope, Ndf};
 use crate::model::parameters::Setting;
 use crate::model::slope_azimuths::Turn;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -39,6 +39,67 @@ pub(crate) fn samples<N: Ndf, M: Masking>(
         }
     }
     samples
+}
+
+/// A microfacet that reflects ωi above the horizon: c = ωi·ωm, cos θe, and D G2 / (4 μi μe) cos θe dωe.
+pub(crate) struct Facet {
+    pub c: f64,
+    pub mu_e: f64,
+    pub weight: f64,
+}
+
+/// Visits the facets that `samples` lists the directions of. D dωm is what the map makes it, so that it is not evaluated.
+///
+/// It is for maskings that do not depend on the normal.
+pub(crate) fn facets<N: Ndf, M: Masking>(
+    fixed: &Fixed,
+    s: &Setting,
+    counts: [SlopeCounts; 2],
+    tolerance: f64,
+    visit: &mut dyn FnMut(Facet),
+) {
+    let (Some(maps), Some(axes)) = (N::MAPS, N::AXES) else { return };
+    let Coordinate { end, map } = maps.fine;
+    let axes @ [x, y] = axes(s);
+    let counts = fixed.counts(counts[0]);
+    let (rule, nodes) = (gauss_legendre(counts.azimuths), gauss_legendre(counts.nodes));
+    let (sin, mu) = (fixed.sin(), fixed.mu);
+    let (sin_phi, cos_phi) = fixed.phi.sin_cos();
+    let toward = |mu: f64, alpha: f64| Toward { mu, setting: Setting { alpha, ..*s } };
+    let toward_i = toward(mu, (x * cos_phi).hypot(y * sin_phi));
+    for panel in panels(fixed, axes) {
+        for node in &rule {
+            let (turn, alpha) = panel.turn(node, fixed, axes);
+            let s = Setting { alpha, ..*s };
+            let end = |t| end(t, &s);
+            let none = |_: f64| Normal { p: 0.0, m: 1.0, solid_angle: 0.0 };
+            let normals = Normals { end: &end, at: &none, kinks: Kinks::NONE, turn: None };
+            // dχ/2π: D of α(φ) is D times αx αy/α(φ)², which dφ has of dχ.
+            let dchi = turn.weight * alpha * alpha / (x * y);
+            for strip in strips(&turn, fixed, tolerance, &normals) {
+                for node in &nodes {
+                    let (r, dr) = strip.node(node);
+                    let MappedSlope { p, m, weight } = map(r, &s);
+                    let y_m = m * m + p * p;
+                    let root = y_m.sqrt();
+                    let (t, c) = (p / m, (sin * turn.cos * p + mu * m) / root);
+                    let mu_e = m * m / y_m * mu * (turn.t_max - t) * (t + 1.0 / turn.t_max);
+                    // ωe = 2 (ωi·ωm) ωm − ωi, in the frame of ωi and then of the tangent.
+                    let q = 2.0 * c * (p / root);
+                    let [x_i, y_i] = [q * turn.cos - sin, q * turn.sin];
+                    let [x_e, y_e] = [x_i * cos_phi - y_i * sin_phi, x_i * sin_phi + y_i * cos_phi];
+                    let sin2 = x_e * x_e + y_e * y_e;
+                    let seen = ((x * x_e).powi(2) + (y * y_e).powi(2)) / sin2;
+                    let toward_e = toward(mu_e, if sin2 > 0.0 { seen.sqrt() } else { x });
+                    // D cos θm dωm = m weight dr dχ/2π and cos θm = m/root; dωe = 4 c dωm.
+                    let weight = 4.0 * c * mu_e * weight * root * dr * dchi;
+                    if mu_e > 0.0 && weight.is_finite() {
+                        visit(Facet { c, mu_e, weight: weight * M::visibility::<N>(&toward_i, &toward_e) });
+                    }
+                }
+            }
+        }
+    }
 }
 
 /// χ = start ± width sinh u, u from 0 to `reach`.
@@ -115,10 +176,43 @@ mod tests {
     use crate::base::half_angle::MU_MIN;
     use crate::model;
     use crate::model::masking::smith_correlated::SmithCorrelated;
+    use crate::model::masking::smith_separable::SmithSeparable;
     use crate::model::ndf::beckmann::Beckmann;
     use crate::model::ndf::ggx::Ggx;
-    use crate::model::ndf::stretched::Stretched;
+    use crate::model::ndf::stretched::{Stretch, Stretched};
     use rayon::prelude::*;
+
+    /// The facets make the sum over the listed directions, to rounding.
+    #[test]
+    fn facets_and_directions_agree() {
+        facets_make_samples::<Ggx, SmithCorrelated>("ggx-anisotropic");
+        facets_make_samples::<Beckmann, SmithSeparable>("beckmann-anisotropic-smith-separable-schlick");
+    }
+
+    fn facets_make_samples<N: Stretch, M: Masking>(name: &str) {
+        let model = model::find(name).unwrap();
+        let counts = [SlopeCounts { azimuths: 20, nodes: 20 }; 2];
+        for (mu, phi) in [(1.0, 0.0), (0.6, 0.4), (0.05, 1.3), (1e-4, 0.9)] {
+            for (alpha, aspect) in [(0.5, 1.0), (0.1, 9.0), (1e-3, 0.04)] {
+                let mut parameters = model.defaults();
+                parameters[0] = aspect;
+                let s = Setting { alpha, parameters };
+                let fixed = Fixed { mu, phi, factored: false, kinks: Vec::new() };
+                let [mut by_facets, mut by_directions] = [[0.0; 2]; 2];
+                facets::<Stretched<N>, M>(&fixed, &s, counts, 1e-5, &mut |Facet { c, weight, .. }| {
+                    let x = (1.0 - c).powi(5);
+                    by_facets = [by_facets[0] + weight * (1.0 - x), by_facets[1] + weight * x];
+                });
+                for Sample { pair, azimuth, weight } in samples::<Stretched<N>, M>(&fixed, &s, counts, 1e-5) {
+                    let [a, b] = (model.lobe)(&pair, &azimuth, &s);
+                    by_directions = [by_directions[0] + weight * a, by_directions[1] + weight * b];
+                }
+                for (a, b) in by_facets.into_iter().zip(by_directions) {
+                    assert!((a - b).abs() <= 1e-12, "{name} at {mu}, {phi}, {alpha}, {aspect}: {a} and {b}");
+                }
+            }
+        }
+    }
 
     /// Errors of counts: what the tables of `ndf/stretched.rs` are read from.
     #[test]

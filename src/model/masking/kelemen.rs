@@ -20,6 +20,7 @@ impl Masking for Kelemen {
         part: part!("masking/kelemen"),
     };
     const OF_NORMAL: Option<Kinks> = Some(KINKS);
+    const TURNS: bool = true;
     const COUNTS: Option<MaskingCounts> =
         Some(|correlated, tolerance| correlated.map(|side| counts(side, tolerance)));
 

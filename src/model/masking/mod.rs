@@ -49,6 +49,9 @@ pub(crate) trait Masking {
     /// Where G2 is not smooth in ωm, if it depends on ωm: the kernel that integrates in slopes cannot have it then.
     const OF_NORMAL: Option<Kinks> = None;
 
+    /// Whether it turns near the normal, on a scale of its own: not every distribution's counts see that.
+    const TURNS: bool = false;
+
     /// G2 / (4 μi μe), of the microfacet and in proportion to what all azimuths share.
     fn of_normal(shared: f64, _p: &Pair, _h: &Half) -> f64 {
         shared

@@ -71,7 +71,9 @@ impl Stretch for Beckmann {
     };
     /// The exponent x ≤ 128 has 5.7 r roundings more.
     const ROUNDINGS: [f64; 2] = [700.0, 730.0];
-    const BOUNDS: &'static [(&'static str, f64)] = &[("disney-clearcoat", 18.3)];
+    /// Of cloth's visibility half of what the facets cover as seen from the side, αx/√π, where ωi grazes.
+    const BOUNDS: &'static [(&'static str, f64)] =
+        &[("disney-clearcoat", 18.3), ("ashikhmin-neubelt", 2.821)];
     const COUNTS: [[usize; 2]; 10] =
         [[4, 6], [6, 8], [8, 11], [12, 20], [18, 34], [28, 72], [36, 98], [36, 98], [36, 98], [36, 98]];
 }

@@ -64,10 +64,11 @@ impl Stretch for Ggx {
         part: Self::TERM.part,
     };
     const ROUNDINGS: [f64; 2] = [60.0, 12.0];
-    const BOUNDS: &'static [(&'static str, f64)] = &[("disney-clearcoat", 22.56)];
+    /// Of cloth's visibility half of what the facets cover as seen from the side, αx, where ωi grazes.
+    const BOUNDS: &'static [(&'static str, f64)] = &[("disney-clearcoat", 22.56), ("ashikhmin-neubelt", 5.0)];
     const COUNTS: [[usize; 2]; 10] =
         [[4, 6], [5, 8], [8, 11], [12, 14], [20, 20], [38, 30], [54, 48], [58, 60], [58, 60], [58, 60]];
 }
 
-/// Beyond it, in units of α, the lobe holds 1e-18 of its weight.
+/// The cap of the coarse map: beyond it, in units of α, the lobe holds 1e-18 of its weight.
 pub(crate) const TAN_CAP: f64 = 1e9;

@@ -96,6 +96,9 @@ impl Ndf for Gtr {
         ..CountRule::new(counts)
     });
 
+    /// Below γ = 1.3, counts leave 4.6 times 1e-6 with Kelemen's.
+    const RULE_HOLDS_TURNS: bool = false;
+
     fn ndf(h: &Half, hz2: f64, s: &Setting) -> f64 {
         let Setting { alpha, .. } = *s;
         let (a2, flat) = (alpha * alpha, (1.0 - alpha) * (1.0 + alpha));
@@ -310,7 +313,8 @@ mod tests {
         {
             let model = model::find(name).unwrap();
             let Integral::Mapped(map) = model.integral else { unreachable!() };
-            for (alpha, gamma) in [(1e-3, 1.0), (0.01, 1.0), (0.2, 1.0), (0.01, 10.0)] {
+            let settings = [(1e-3, 1.0), (0.01, 1.0), (0.2, 1.0), (0.01, 10.0)];
+            for &(alpha, gamma) in if crate::base::is_thorough() { &settings[..] } else { &settings[2..] } {
                 let s = setting(alpha, gamma);
                 let sum_of = |nodes: Vec<Node>, finer: f64| {
                     let at = |n: &Node| {

@@ -51,6 +51,8 @@ pub(crate) trait Ndf: Sized {
     const MAPS: Option<Maps> = None;
     /// Node counts of its integrals. Without them integrals are found by adaptive quadrature.
     const RULE: Option<CountRule> = None;
+    /// Whether the counts hold with a masking that turns near the normal: see [`Masking::TURNS`](super::masking::Masking::TURNS).
+    const RULE_HOLDS_TURNS: bool = true;
     /// How normals are drawn, for the rules that sample.
     const DRAWS: Option<Draws> = None;
 

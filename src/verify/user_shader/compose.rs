@@ -47,8 +47,19 @@ pub(super) const WORKGROUP: usize = 64;
 /// Floats for each pair: ωi and ωi · h, ωo and ωi · ωo, h and a blank.
 pub(super) const STRIDE: usize = 12;
 
-/// Appends the compute shader to the user's code, in which the function is called `call`.
-pub(super) fn compose(code: &str, call: &str, signature: &Signature, up: UpAxis, group: u32) -> String {
+/// What a value is where the loops took more turns than every driver runs: a NaN that no arithmetic makes.
+pub(super) const CUT: u32 = 0xffc0_71ee;
+
+/// Appends the compute shader to the user's code, in which the function is called `call`. Returns the name of the variable that
+/// counts turns, too: above `certain` the value is [`CUT`].
+pub(super) fn compose(
+    code: &str,
+    call: &str,
+    signature: &Signature,
+    up: UpAxis,
+    group: u32,
+    certain: u32,
+) -> (String, String) {
     // The prefix must not occur in the user's source.
     let mut prefix = String::from("gonio");
     while code.contains(&prefix) {
@@ -92,9 +103,11 @@ pub(super) fn compose(code: &str, call: &str, signature: &Signature, up: UpAxis,
         }
     }
     let vectors = vectors(signature.parameters.len());
-    format!(
+    let channels = result.channels;
+    let text = format!(
         "{code}
-struct {prefix}_Job {{ setting: array<vec4<u32>, {vectors}>, count: u32 }}
+struct {prefix}_Job {{ setting: array<vec4<u32>, {vectors}>, count: u32, cut: u32 }}
+var<private> {prefix}_turns: u32;
 @group({group}) @binding(0) var<uniform> {prefix}_job: {prefix}_Job;
 @group({group}) @binding(1) var<storage, read> {prefix}_pairs: array<vec4<f32>>;
 @group({group}) @binding(2) var<storage, read_write> {prefix}_values: array<f32>;
@@ -105,9 +118,12 @@ fn {prefix}_main(@builtin(global_invocation_id) {prefix}_id: vec3<u32>) {{
     let {prefix}_wi = {prefix}_pairs[3u * {prefix}_k];
     let {prefix}_wo = {prefix}_pairs[3u * {prefix}_k + 1u];
     let {prefix}_h = {prefix}_pairs[3u * {prefix}_k + 2u];
-{body}}}
+{body}
+    if ({prefix}_turns > {certain}u) {{ {prefix}_values[{channels}u * {prefix}_k] = bitcast<f32>({prefix}_job.cut); }}
+}}
 "
-    )
+    );
+    (text, format!("{prefix}_turns"))
 }
 
 /// Vectors of four that hold a setting.
@@ -125,7 +141,7 @@ pub(super) fn job(parameters: &[ShaderParameter], setting: &[f64], count: usize)
     };
     let mut words: Vec<u32> = parameters.iter().zip(setting).map(word).collect();
     words.resize(4 * vectors(parameters.len()), 0);
-    words.extend([count as u32, 0, 0, 0]);
+    words.extend([count as u32, CUT, 0, 0]);
     bytemuck::cast_slice(&words).to_vec()
 }
 

@@ -34,11 +34,12 @@ pub use source::is_shader;
 
 use crate::base::error::{Error, Result};
 use crate::verify::ParameterRange;
+use crate::verify::limits::{self, Inlined};
 use bindings::Private;
 use imports::Joined;
 use items::{Item, ItemKind};
 use naga::valid::{Capabilities, FunctionInfo, ShaderStages, ValidationFlags, Validator};
-use naga::{Block, Handle, Module, Statement, TypeInner};
+use naga::{Handle, Module, TypeInner};
 use resources::Slot;
 use signature::{Signature, Understood, Wishes, show};
 use source::ShaderLanguage;
@@ -78,6 +79,8 @@ pub struct UserFunction {
     loops: bool,
     /// Whether it computes in f16.
     half: bool,
+    /// Whether it is nested deeper than the stack of any thread holds.
+    is_deep: bool,
 }
 
 /// Functions that a message lists.
@@ -116,17 +119,36 @@ impl UserFunction {
         let joined = imports::join(&file, &text, path, language, &options.includes, &options.defines);
         let joined = joined.map_err(|error| error.at(&file))?;
         let text = joined.text.joined();
-        let items = items::items(&text, language);
+        let is_deep = limits::check_text(&text).map_err(|error| error.at(&file))?;
         let roles = options.roles.iter().map(|(name, role)| match role.as_str() {
             "parameter" => Ok((name.clone(), None)),
             role => Ok((name.clone(), Some(role.parse()?))),
         });
         let wishes = Wishes { roles: roles.collect::<Result<_>>()?, result: options.result.clone() };
-        let shader = Shader { file, joined, text, items, language, wishes, up: options.up };
-        match &options.entry {
-            Some(entry) => shader.function(entry),
-            None => shader.only_function(),
+        limits::with_stack(is_deep, || {
+            let items = items::items(&text, language);
+            let shader = Shader { file, joined, text, items, language, wishes, up: options.up, is_deep };
+            match &options.entry {
+                Some(entry) => shader.function(entry),
+                None => shader.only_function(),
+            }
+        })
+    }
+
+    /// The module that runs the function, and counts the turns of its loops where a driver stops them.
+    ///
+    /// # Errors
+    /// When the function does not stand in the module as it does in its file.
+    pub(crate) fn compose(&self, loop_turns: Option<u32>) -> Result<Module> {
+        let certain = loop_turns.map_or(u32::MAX, limits::certain_turns);
+        let (text, counter) =
+            compose::compose(&self.code, &self.call, &self.signature, self.up, run::GROUP, certain);
+        let module = naga::front::wgsl::parse_str(&text);
+        let mut module = module.map_err(|error| Error::input(error.emit_to_string(&text)))?;
+        if loop_turns.is_some() {
+            limits::count_turns(&mut module, &counter);
         }
+        Ok(module)
     }
 
     /// The name of the function.
@@ -210,6 +232,7 @@ struct Shader {
     language: ShaderLanguage,
     wishes: Wishes,
     up: UpAxis,
+    is_deep: bool,
 }
 
 impl Shader {
@@ -363,8 +386,9 @@ impl Shader {
             !self::globals(&module, &info[handle], std::slice::from_ref(&slot.name)).is_empty()
         });
         let signature = Signature::new(&module, function, &globals, &self.wishes);
+        let Inlined { loops, .. } = Inlined::new(&module, handle).map_err(|error| error.at(&self.file))?;
         let function = self.finish(entry, &shown, signature, is_compute, &module, code, entry);
-        function.map(|function| UserFunction { slots, ..function })
+        function.map(|function| UserFunction { slots, loops, ..function })
     }
 
     fn glsl(
@@ -394,7 +418,9 @@ impl Shader {
             signature
         });
         let code = glsl::translate(text, module.clone(), handle, &variables)?;
-        self.finish(entry, &shown, signature, true, &module, code, glsl::ENTRY)
+        let Inlined { loops, .. } = Inlined::new(&module, handle).map_err(|error| error.at(&self.file))?;
+        let function = self.finish(entry, &shown, signature, true, &module, code, glsl::ENTRY);
+        function.map(|function| UserFunction { loops, ..function })
     }
 
     #[allow(clippy::too_many_arguments)] // each is one result of the stages before
@@ -418,7 +444,8 @@ impl Shader {
             file: self.file.clone(),
             entry: entry.into(),
             signature,
-            loops: module.functions.iter().any(|(_, function)| has_loop(&function.body)),
+            loops: false,
+            is_deep: self.is_deep,
             half: module.types.iter().any(|(_, ty)| is_half(&ty.inner)),
             code,
             call: call.into(),
@@ -459,15 +486,4 @@ fn is_half(inner: &TypeInner) -> bool {
         }
         _ => false,
     }
-}
-
-/// Whether a block has a loop in it.
-fn has_loop(block: &Block) -> bool {
-    block.iter().any(|statement| match statement {
-        Statement::Loop { .. } => true,
-        Statement::Block(block) => has_loop(block),
-        Statement::If { accept, reject, .. } => has_loop(accept) || has_loop(reject),
-        Statement::Switch { cases, .. } => cases.iter().any(|case| has_loop(&case.body)),
-        _ => false,
-    })
 }

@@ -1,15 +1,17 @@
 //! Runs a user's function on a device.
 
 use super::UserFunction;
-use super::compose::{STRIDE, WORKGROUP, compose, job};
+use super::compose::{CUT, STRIDE, WORKGROUP, job};
 use super::resources::{RESOURCES, bind_group, has_f32};
 use crate::backend::gpu::device::Device;
 use crate::base::angles::Angles;
 use crate::base::error::{Error, Result};
 use crate::base::half_angle::MU_MIN;
 use crate::base::timings::Stopwatch;
+use crate::verify::limits;
 use crate::verify::{ParameterRange, Subject, Symmetry};
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::sync::mpsc;
 use std::time::Duration;
 
@@ -64,6 +66,8 @@ pub struct UserShader<'a> {
     symmetry: Symmetry,
     /// Turns after which the driver stops its loops, if it has any and the driver does.
     loop_turns: Option<u32>,
+    /// Whether the driver may have stopped them.
+    is_cut: bool,
     pipeline: wgpu::ComputePipeline,
     bindings: wgpu::BindGroup,
     /// Textures and samplers, where it reads some.
@@ -78,15 +82,15 @@ pub struct UserShader<'a> {
 }
 
 /// A group of bindings: the user's file has none left.
-const GROUP: u32 = 0;
+pub(super) const GROUP: u32 = 0;
 /// Pairs in a dispatch: at first, and at most.
-const BATCH: usize = 1 << 10;
+const BATCH: usize = WORKGROUP;
 const LARGEST_BATCH: usize = 1 << 17;
 /// Dispatches longer than this, s, are halved, shorter than a quarter doubled: well below the 2 s after which
 /// drivers lose patience.
 const LONG: f64 = 0.08;
 /// A shader that takes longer for one dispatch does not end.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_secs(30);
 /// What values hold before they are computed: a NaN that no arithmetic makes.
 const UNTOUCHED: u32 = 0xffc0_71ed;
 
@@ -129,20 +133,23 @@ impl<'a> UserShader<'a> {
         };
         let loop_turns = if function.loops { device.canary()?.loop_turns } else { None };
         let (wgpu, _) = device.wgpu();
-        let code = compose(&function.code, &function.call, &function.signature, function.up, GROUP);
-        let source = wgpu::ShaderSource::Wgsl(code.into());
         let pipeline = device.guarded(|| {
-            let module = wgpu
-                .create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(&function.entry), source });
-            device.fault()?;
-            Ok(wgpu.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(&function.entry),
-                layout: None,
-                module: &module,
-                entry_point: None,
-                compilation_options: Default::default(),
-                cache: None,
-            }))
+            limits::with_stack(function.is_deep, || {
+                let source = wgpu::ShaderSource::Naga(Cow::Owned(function.compose(loop_turns)?));
+                let module = wgpu.create_shader_module(wgpu::ShaderModuleDescriptor {
+                    label: Some(&function.entry),
+                    source,
+                });
+                device.fault()?;
+                Ok(wgpu.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                    label: Some(&function.entry),
+                    layout: None,
+                    module: &module,
+                    entry_point: None,
+                    compilation_options: Default::default(),
+                    cache: None,
+                }))
+            })
         });
         let pipeline = pipeline.map_err(refused)?;
 
@@ -186,6 +193,7 @@ impl<'a> UserShader<'a> {
             cosine,
             symmetry,
             loop_turns,
+            is_cut: false,
             pipeline,
             bindings,
             resources,
@@ -255,6 +263,10 @@ impl<'a> UserShader<'a> {
                 self.function.entry
             )));
         }
+        if out[first..].iter().any(|value| value.to_bits() == CUT) {
+            self.is_cut = true;
+            return Err(lost(format!("it stops the loops of fn {}", self.function.entry)));
+        }
         if cosine {
             // f cos θi as it was returned, by the cosine as it was given. What is not finite stays so.
             for (values, pair) in
@@ -304,17 +316,20 @@ impl Subject for UserShader<'_> {
     }
 
     fn notes(&self) -> Vec<String> {
-        let stops = |turns| {
-            format!(
-                "it has loops, and this driver stops an invocation's after {turns} turns in all, silently: where fn {} \
-                 takes more, what is checked is cut short",
-                self.function.entry
-            )
-        };
-        let mut notes: Vec<_> = self.loop_turns.map(stops).into_iter().collect();
+        let mut notes = Vec::new();
         if self.resources.is_some() && !has_f32(self.device.wgpu().0) {
             notes.push("its textures are in f16, as this device does not filter f32".into());
         }
         notes
+    }
+
+    fn cut_short(&self) -> Option<String> {
+        let turns = self.loop_turns.filter(|_| self.is_cut)?;
+        Some(format!(
+            "the loops of fn {} take more than {} turns for a pair, and this driver silently stops loops after {turns} turns of \
+             all pairs in step; use another driver or fewer turns",
+            self.function.entry,
+            limits::certain_turns(turns),
+        ))
     }
 }

@@ -33,6 +33,18 @@ pub fn device() -> &'static Evaluator {
 }
 
 /// Both evaluators.
+/// Whether tests take all of their cases, as `scripts/test.sh --long` has them, rather than a few of each kind.
+pub fn is_thorough() -> bool {
+    std::env::var_os("GONIO_THOROUGH").is_some()
+}
+
+/// All of a list where tests are thorough, else every `step`-th and the last.
+pub fn some_of<T: Copy>(all: &[T], step: usize) -> Vec<T> {
+    let last = all.len().saturating_sub(1);
+    let is_taken = |k: usize| is_thorough() || k.is_multiple_of(step) || k == last;
+    (0..all.len()).filter(|&k| is_taken(k)).map(|k| all[k]).collect()
+}
+
 pub fn evaluators() -> [&'static Evaluator; 2] {
     [device(), &Evaluator::Cpu]
 }

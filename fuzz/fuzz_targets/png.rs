@@ -1,0 +1,3 @@
+#![no_main]
+
+gonio_fuzz::target!("png");
