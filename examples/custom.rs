@@ -32,7 +32,7 @@ fn lommel_seeliger() -> ModelBuilder {
              fn lobe_row(p: Pair, alpha: real) -> real { return 0.25 * INV_PI / (p.mu_i + p.mu_e); }",
         )
         .twin(|p, _, _| [0.25 / (PI * (p.mu_i + p.mu_e)), 0.0])
-        .integral(Integral::Mapped(Map { samples, most: |_, _| 2 * NODES, mean: None, limit: |_, _| None }))
+        .integral(Integral::Listed(Map { samples, most: |_, _| 2 * NODES, mean: None, limit: |_, _| None }))
         .rho_bound(1.0)
 }
 

@@ -142,7 +142,7 @@ impl Evaluator {
     /// The origin of the table of a plan: its rule, precision and seconds.
     pub(crate) fn origin(&self, plan: &TablePlan, seconds: f64) -> Origin {
         let path = self.path(plan);
-        Origin { rule: path.rule(plan, self), precision: path.name(), seconds }
+        Origin { rule: path.rule(plan, self), precision: path.precision(), seconds }
     }
 
     /// The path that evaluates a plan: in f64 where its tolerance asks for it, and on the CPU where the device has no f64.
@@ -172,7 +172,7 @@ pub(crate) struct Computed {
 /// The origin of a table: its rule, precision and seconds.
 pub(crate) struct Origin {
     rule: String,
-    precision: &'static str,
+    precision: Precision,
     seconds: f64,
 }
 
@@ -216,7 +216,7 @@ impl Origin {
             rule: self.rule,
             storage: plan.stored(),
             bilinear: plan.bilinear().cloned(),
-            precision: self.precision.into(),
+            precision: self.precision,
             error,
             seconds: self.seconds,
         }
@@ -283,11 +283,11 @@ impl Path<'_> {
         }
     }
 
-    /// The name of the precision.
-    fn name(self) -> &'static str {
+    /// The arithmetic that it computes in.
+    fn precision(self) -> Precision {
         match self {
-            Self::Device(_, precision) => precision.name(),
-            Self::Cpu(_) => "f64",
+            Self::Device(_, precision) => precision,
+            Self::Cpu(_) => Precision::F64,
         }
     }
 }
@@ -337,7 +337,7 @@ pub fn within_tolerance(plan: &TablePlan, table: &Table) -> Result<()> {
         }
         Rule::Warped if table.storage.bytes() < Storage::F32.bytes() => "allow more, or store it as f32",
         // No table is better than the f32 that it is stored in.
-        Rule::Warped if table.precision == "f32" && plan.tolerance() > STORED_F32 => {
+        Rule::Warped if table.precision == Precision::F32 && plan.tolerance() > STORED_F32 => {
             "allow more, or bake with the device \"cpu\", which is f64"
         }
         Rule::Warped => "allow more",

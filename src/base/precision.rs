@@ -9,6 +9,12 @@ pub enum Precision {
     F64,
 }
 
+impl std::fmt::Display for Precision {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.pad(self.name())
+    }
+}
+
 impl Precision {
     /// `f32` or `f64`.
     pub fn name(self) -> &'static str {

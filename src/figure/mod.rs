@@ -137,7 +137,7 @@ impl Reflectance {
             values,
             measured: table.error.measured_max,
             tolerance: plan.tolerance(),
-            precision: table.precision,
+            precision: table.precision.to_string(),
         })
     }
 

@@ -19,7 +19,7 @@ pub(crate) fn texels<E: Send>(
 ) -> Result<Vec<[f64; 2]>, E> {
     let count = rules.alphas.len() * inner.count();
     let series = match inner {
-        InnerRule::Directions(rule) => SeriesIntegrals::new(rule, lobe, tick)?,
+        InnerRule::Listed(rule) => SeriesIntegrals::new(rule, lobe, tick)?,
         _ => None,
     };
     let raw = |index: usize| {
@@ -83,7 +83,7 @@ fn integrate(rules: &RuleSet, inner: &InnerRule, lobe: &Lobe, row: usize, k: usi
                 add(pairs[k].weight * azimuth.weight, (lobe.model().lobe)(&pairs[k], azimuth, setting));
             }
         }
-        InnerRule::Directions(rule) => return rule.sum(row * rule.fixed.len() + k, lobe.model()),
+        InnerRule::Listed(rule) => return rule.sum(row * rule.fixed.len() + k, lobe.model()),
         InnerRule::ClosedForm { directional, mus } => return directional(mus[k], setting),
     }
     sum

@@ -4,7 +4,7 @@
 //! Mₖ = ∫ D G2 / (4 μi μe) Tₖ(2c − 1) cos θe dωe. The moments of the last tables are kept: the three channels of a film, and
 //! films on different bases, are one integration and some products.
 
-use crate::integrate::direction_rule::{At, DirectionRule};
+use crate::integrate::listed_rule::{At, ListedRule};
 use crate::model::directions::Fixed;
 use crate::model::lobe::Lobe;
 use crate::model::parameters::Setting;
@@ -55,7 +55,7 @@ struct Key {
 impl SeriesIntegrals {
     /// The integrals of a lobe over listed directions, where they are worth it.
     pub fn new<E: Send>(
-        rule: &DirectionRule,
+        rule: &ListedRule,
         lobe: &Lobe,
         tick: &(impl Fn(f64) -> Result<(), E> + Sync),
     ) -> Result<Option<Self>, E> {
@@ -104,7 +104,7 @@ impl SeriesIntegrals {
 impl Moments {
     fn new<E: Send>(
         key: Key,
-        rule: &DirectionRule,
+        rule: &ListedRule,
         model: &Model,
         terms: usize,
         tick: &(impl Fn(f64) -> Result<(), E> + Sync),
@@ -216,7 +216,7 @@ fn keep(moments: Moments) -> Arc<Moments> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::integrate::direction_rule::{DirectionSource, DirectionSum};
+    use crate::integrate::listed_rule::{ListedSource, ListedSum};
     use crate::model::{self, Integral};
     use std::convert::Infallible;
     use std::f64::consts::FRAC_PI_2;
@@ -225,7 +225,7 @@ mod tests {
     #[test]
     fn moments_make_the_lobe_s_own_integral() {
         let model = model::find("ggx-anisotropic-smith-correlated-thin-film").unwrap();
-        let Integral::Mapped(map) = model.integral else { panic!("{} has a kernel", model.name) };
+        let Integral::Listed(map) = model.integral else { panic!("{} has a kernel", model.name) };
         let fixed = [[1.0, 0.0], [0.7, 0.3], [0.1, 1.2], [1e-3, 0.8]];
         let fixed = fixed.map(|[mu, phi]| Fixed { mu, phi, factored: false, kinks: Vec::new() }).to_vec();
         for tolerance in [1e-3, 1e-5] {
@@ -235,13 +235,13 @@ mod tests {
                     lobe.set(name, value).unwrap();
                 }
                 let settings = lobe.settings(&[0.0, 0.1, 0.6]);
-                let rule = DirectionRule::new(DirectionSource::Map(map), fixed.clone(), settings, tolerance);
+                let rule = ListedRule::new(ListedSource::Map(map), fixed.clone(), settings, tolerance);
                 let series =
                     SeriesIntegrals::new(&rule, &lobe, &|_| Ok::<_, Infallible>(())).unwrap().unwrap();
                 for index in 0..12 {
                     let own = match rule.integral(index) {
-                        DirectionSum::Limit(_) => None,
-                        DirectionSum::Samples(samples) => Some(samples.iter().fold(0.0, |sum, sample| {
+                        ListedSum::Limit(_) => None,
+                        ListedSum::Samples(samples) => Some(samples.iter().fold(0.0, |sum, sample| {
                             let s = &rule.settings[index / 4];
                             sum + sample.weight * (model.lobe)(&sample.pair, &sample.azimuth, s)[0]
                         })),
@@ -259,7 +259,7 @@ mod tests {
     #[test]
     fn tolerances_are_kept() {
         let model = model::find("ggx-anisotropic-smith-correlated-thin-film").unwrap();
-        let Integral::Mapped(map) = model.integral else { panic!("{} has a kernel", model.name) };
+        let Integral::Listed(map) = model.integral else { panic!("{} has a kernel", model.name) };
         let golden = |k: usize, share: f64| (0.5 + k as f64 * share).fract();
         let cases = if crate::base::is_thorough() { 400 } else { 40 };
         let worst = (0..cases).into_par_iter().map(|k| {
@@ -278,11 +278,11 @@ mod tests {
             let fixed = vec![Fixed { mu, phi, factored: false, kinks: Vec::new() }];
             let settings = lobe.settings(&[2f64.powf(-10.0 * of(0.3069).powi(2))]);
             let rule = |tolerance: f64| {
-                DirectionRule::new(DirectionSource::Map(map), fixed.clone(), settings.clone(), tolerance)
+                ListedRule::new(ListedSource::Map(map), fixed.clone(), settings.clone(), tolerance)
             };
             let own = |tolerance: f64| match rule(tolerance).integral(0) {
-                DirectionSum::Limit(limit) => limit[0],
-                DirectionSum::Samples(samples) => samples
+                ListedSum::Limit(limit) => limit[0],
+                ListedSum::Samples(samples) => samples
                     .iter()
                     .map(|s| s.weight * (model.lobe)(&s.pair, &s.azimuth, &settings[0])[0])
                     .sum(),

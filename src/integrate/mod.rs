@@ -2,9 +2,9 @@
 
 pub(crate) mod albedo_curve;
 pub(crate) mod chebyshev;
-pub(crate) mod direction_rule;
 pub(crate) mod evaluate;
 pub(crate) mod fresnel_series;
+pub(crate) mod listed_rule;
 pub(crate) mod product_rule;
 pub(crate) mod rule_set;
 pub(crate) mod sample_rule;

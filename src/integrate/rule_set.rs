@@ -6,7 +6,7 @@ use crate::base::half_angle::{Azimuth, MU_MIN, Pair, off_horizon};
 use crate::base::quadrature::{Node, gauss_legendre, midpoint};
 use crate::base::tolerance::{FACTOR_SHARE, decade};
 use crate::integrate::chebyshev::{InterpolatedAxis, MAX_ENTRIES, Matrix};
-use crate::integrate::direction_rule::{DirectionRule, DirectionSource};
+use crate::integrate::listed_rule::{ListedRule, ListedSource};
 use crate::integrate::product_rule::DiffuseRule;
 use crate::integrate::sample_rule::{SampleRule, Sampler};
 use crate::integrate::scale::{LobeScale, scales};
@@ -79,7 +79,7 @@ pub(crate) enum InnerRule {
     /// A sum over δφ for each pair (θi, θe).
     Product { pairs: Vec<Pair>, azimuths: Vec<Azimuth> },
     /// A sum over directions that the host finds.
-    Directions(DirectionRule),
+    Listed(ListedRule),
     /// A closed form for each μ.
     ClosedForm { directional: fn(f64, &Setting) -> [f64; 2], mus: Vec<f64> },
 }
@@ -112,7 +112,7 @@ impl RuleSet {
                         let weight = |n: &Node| FRAC_PI_2 * n.weight * (PI * n.x).sin();
                         [thetas, nodes.iter().map(weight).collect()]
                     }
-                    Integral::Mapped(Map { mean: Some(mean), .. }) => {
+                    Integral::Listed(Map { mean: Some(mean), .. }) => {
                         let nodes = mean(table.rule_tolerance());
                         [nodes.iter().map(|n| n.x.acos()).collect(), nodes.iter().map(|n| n.weight).collect()]
                     }
@@ -173,7 +173,7 @@ impl RuleSet {
 pub(crate) fn has_listed_directions(plan: &TablePlan) -> bool {
     let is_listed = |lobe: &Lobe| {
         !lobe.factors().is_empty()
-            || plan.rule() == Rule::Warped && matches!(lobe.model().integral, Integral::Mapped(_))
+            || plan.rule() == Rule::Warped && matches!(lobe.model().integral, Integral::Listed(_))
     };
     plan.quantity().is_integral() && plan.lobes().iter().any(is_listed)
 }
@@ -185,7 +185,7 @@ impl InnerRule {
             Self::Slopes(rule) => rule.mus.len(),
             Self::Samples(rule) => rule.mus.len() * rule.chunks,
             Self::ClosedForm { mus, .. } => mus.len(),
-            Self::Directions(rule) => rule.fixed.len(),
+            Self::Listed(rule) => rule.fixed.len(),
             Self::Product { pairs, .. } => pairs.len(),
         }
     }
@@ -197,7 +197,7 @@ impl InnerRule {
             Self::Samples(rule) => rule.chunk,
             Self::Product { azimuths, .. } => azimuths.len(),
             Self::ClosedForm { .. } => 1,
-            Self::Directions(rule) => rule.max_cost(),
+            Self::Listed(rule) => rule.max_cost(),
         }
     }
 }
@@ -268,28 +268,28 @@ fn integrals(
         _ => None,
     };
     let new = |alphas, kind| RuleSet { alphas, scales: Vec::new(), kind };
-    let direction_rule = |source: DirectionSource| {
+    let listed_rule = |source: ListedSource| {
         let factored = !lobe.factors().is_empty();
         let fixed = mus()
             .into_iter()
             .zip(fixed)
             .map(|(mu, &[_, phi])| Fixed { mu, phi, factored, kinks: Vec::new() })
             .collect();
-        DirectionRule::new(source, fixed, lobe.settings(&alphas), table.rule_tolerance())
+        ListedRule::new(source, fixed, lobe.settings(&alphas), table.rule_tolerance())
     };
     // The plan refuses other rules for lobes with factors.
     if !lobe.factors().is_empty() {
         let source = match lobe.model().integral {
-            Integral::Slopes(slopes) => DirectionSource::Map(slopes.map),
-            Integral::Mapped(map) => DirectionSource::Map(map),
-            Integral::Smooth(counts) => DirectionSource::Product(DiffuseRule { counts, kinked: false }),
-            Integral::Kinked(counts) => DirectionSource::Product(DiffuseRule { counts, kinked: true }),
-            Integral::Delta(directional) => DirectionSource::Delta(directional),
-            Integral::Unbounded(_) => DirectionSource::Delta(|_, _| [f64::NAN; 2]),
+            Integral::Slopes(slopes) => ListedSource::Map(slopes.map),
+            Integral::Listed(map) => ListedSource::Map(map),
+            Integral::Smooth(counts) => ListedSource::Product(DiffuseRule { counts, kinked: false }),
+            Integral::Kinked(counts) => ListedSource::Product(DiffuseRule { counts, kinked: true }),
+            Integral::Delta(directional) => ListedSource::Delta(directional),
+            Integral::Unbounded(_) => ListedSource::Delta(|_, _| [f64::NAN; 2]),
         };
         let fixed_is_exitant = table.quantity().fixed_direction() == Some(FixedDirection::Exitant);
-        let rule = direction_rule(source).times(scales(table, lobe), fixed_is_exitant);
-        return new(alphas, summed(InnerRule::Directions(rule), weights.to_vec()));
+        let rule = listed_rule(source).times(scales(table, lobe), fixed_is_exitant);
+        return new(alphas, summed(InnerRule::Listed(rule), weights.to_vec()));
     }
     if let (Some((sampler, samples)), Integral::Slopes(slopes)) = (sampler, lobe.model().integral)
         && let Some(sampling) = &slopes.sampling
@@ -308,9 +308,9 @@ fn integrals(
         (_, Integral::Slopes(slopes)) => {
             return slope_rule_set(table, lobe, slopes, [alphas, mus()], weights);
         }
-        (_, Integral::Mapped(map)) => {
-            let rule = direction_rule(DirectionSource::Map(map));
-            summed(InnerRule::Directions(rule), weights.to_vec())
+        (_, Integral::Listed(map)) => {
+            let rule = listed_rule(ListedSource::Map(map));
+            summed(InnerRule::Listed(rule), weights.to_vec())
         }
         (_, Integral::Delta(directional)) => {
             let mus = thetas.iter().map(|theta| theta.cos()).collect();

@@ -45,7 +45,7 @@ impl<'a> TableEntry<'a> {
             channels: &table.channels,
             files,
             rule: &table.rule,
-            precision: &table.precision,
+            precision: table.precision.name(),
             storage: table.storage,
             scale: (table.storage == Storage::Unorm16).then_some(1.0 / UNORM),
             bilinear: table.bilinear.as_ref(),

@@ -357,7 +357,7 @@ mod tests {
         ];
         for (name, plenty) in models {
             let model = model::find(name).unwrap();
-            let model::Integral::Mapped(map) = model.integral else { unreachable!() };
+            let model::Integral::Listed(map) = model.integral else { unreachable!() };
             let sum = |samples: Vec<Sample>, s: &Setting| {
                 samples.into_iter().fold([0.0; 2], |sum, Sample { pair, azimuth, weight }| {
                     let f = (model.lobe)(&pair, &azimuth, s);

@@ -125,7 +125,7 @@ parts! {
 }
 
 /// GGX with the defaults.
-pub(super) static GGX: Model = Model {
+pub(crate) static GGX: Model = Model {
     summary: "GGX microfacets, height-correlated Smith, Schlick: f = F0·A + F90·B",
     source: "Walter et al. 2007, eq. 20 and 33; Heitz 2014, eq. 99; Schlick 1994, eq. 15",
     ..Made::<Ggx, SmithCorrelated, Schlick>::MODEL
@@ -266,7 +266,7 @@ impl<N: Ndf, M: Masking, F: Fresnel> Made<N, M, F> {
             Some(why) => Integral::Unbounded(why),
             None => match &Self::SLOPES {
                 Some(slopes) => Integral::Slopes(slopes),
-                None => Integral::Mapped(Self::MAP),
+                None => Integral::Listed(Self::MAP),
             },
         },
         value_f32: N::F32.value + F::VALUE_F32,
@@ -644,7 +644,7 @@ mod tests {
     fn largest_rho(model: &Model) -> (f64, String) {
         let map = match model.integral {
             Integral::Slopes(slopes) => slopes.map,
-            Integral::Mapped(map) => map,
+            Integral::Listed(map) => map,
             _ => return (0.0, String::new()),
         };
         let mut cases = Vec::new();

@@ -23,8 +23,12 @@ pub(crate) mod slope_azimuths;
 #[cfg(test)]
 pub(crate) mod truth;
 
+#[cfg(feature = "light")]
+pub(crate) use diffuse::lambert::MODEL as LAMBERT;
 pub(crate) use half_vector::stretched::Facet;
 pub(crate) use microfacet::FacetSum;
+#[cfg(feature = "lab")]
+pub(crate) use microfacet::GGX;
 
 pub use builder::{ModelBuilder, Twin};
 pub use fresnel::metals::{METALS, Metal};
@@ -140,7 +144,7 @@ pub enum Integral {
     /// panels end there. How many of each in each of the two panels of θe, and of δφ ∈ [0, π].
     Kinked(fn(tolerance: f64) -> [usize; 2]),
     /// By directions that the host finds, each texel its own: for any lobe, wherever it lives.
-    Mapped(Map),
+    Listed(Map),
     /// In closed form: (A, B) of ρ(μ). Such a model is a delta and has no values.
     Delta(fn(mu: f64, &Setting) -> [f64; 2]),
     /// Not at all, and why: ρ has no bound, so that no absolute tolerance holds. Such a model has values
@@ -318,11 +322,11 @@ impl Model {
         parameters
     }
 
-    /// The same in R, G or B: a parameter called `channel` is the channel's number.
+    /// The same in R, G or B, where a parameter tells them apart: see [`Parameter::CHANNEL`].
     #[cfg(feature = "scene")]
     pub(crate) fn defaults_in(&self, channel: usize) -> Parameters {
         let mut parameters = self.defaults();
-        let own = self.parameters.iter().filter(|parameter| parameter.name == "channel");
+        let own = self.parameters.iter().filter(|parameter| parameter.name == Parameter::CHANNEL);
         own.for_each(|parameter| parameters[parameter.place] = channel as f64);
         parameters
     }

@@ -72,6 +72,11 @@ pub struct Parameter {
     pub place: usize,
 }
 
+impl Parameter {
+    /// The name of the parameter that is 0, 1, 2 in R, G, B of a material.
+    pub const CHANNEL: &'static str = "channel";
+}
+
 impl Shape {
     /// α = roughness², the slope of microfacets: α → 0 is the mirror.
     pub const ALPHA: Self = Self {

@@ -465,7 +465,7 @@ impl TablePlan {
             }
             let fits = match model.integral {
                 Integral::Slopes(_) => model.has_samplers() || self.rule.samples().is_none(),
-                Integral::Smooth(_) | Integral::Kinked(_) | Integral::Mapped(_) => {
+                Integral::Smooth(_) | Integral::Kinked(_) | Integral::Listed(_) => {
                     self.rule.samples().is_none()
                 }
                 Integral::Delta(_) => matches!(self.rule, Rule::Warped | Rule::Grid { .. }),
@@ -476,7 +476,7 @@ impl TablePlan {
                 let kind = match model.integral {
                     _ if model.is_anisotropic() => "anisotropic",
                     Integral::Delta(_) => "a delta",
-                    Integral::Slopes(_) | Integral::Mapped(_) => "a lobe without samplers",
+                    Integral::Slopes(_) | Integral::Listed(_) => "a lobe without samplers",
                     _ => "no microfacet lobe",
                 };
                 return Err(format!(

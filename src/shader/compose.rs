@@ -27,7 +27,7 @@ pub enum Kernel {
     /// Integrals over (θe, δφ).
     Product,
     /// Integrals over directions that the host finds.
-    Mapped,
+    Listed,
     /// Integrals by sampling the distribution of normals.
     Ndf,
     /// Integrals by sampling the visible normals.
@@ -135,7 +135,7 @@ impl Kernel {
             (Self::WideValues, 2) => &[PUT_WIDE, part!("kernel/store_2"), VALUES],
             (Self::WideValues, _) => &[PUT_WIDE, part!("kernel/store_3"), VALUES],
             (Self::Points | Self::AddPoints, _) => &[part!("kernel/point"), part!("kernel/points")],
-            (Self::Mapped, _) => &[part!("kernel/point"), part!("kernel/mapped")],
+            (Self::Listed, _) => &[part!("kernel/point"), part!("kernel/listed")],
             (Self::Slopes, _) => {
                 &[part!("lobe/slopes"), part!("kernel/nodes_uniform"), part!("kernel/slopes")]
             }

@@ -10,6 +10,7 @@ pub mod storage;
 pub use check::Check;
 
 use crate::base::error::{Error, Result};
+use crate::base::precision::Precision;
 use crate::table::axis::Axis;
 use crate::table::quantity::Quantity;
 use crate::table::report::Choice;
@@ -42,8 +43,8 @@ pub struct Table {
     pub storage: Storage,
     /// The layout that the layout search chose, where it did.
     pub bilinear: Option<Choice>,
-    /// The arithmetic: `f32` or `f64`.
-    pub precision: String,
+    /// The arithmetic.
+    pub precision: Precision,
     /// The error of the values against the reference.
     pub error: TableError,
     /// The seconds to compute the table and to read it back, without compiling and without the check.

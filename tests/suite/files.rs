@@ -2,6 +2,7 @@
 //! a set of them is replaced as a whole or not at all.
 
 use crate::common::readers;
+use gonio::base::precision::Precision;
 use gonio::io::format::{EXR, FORMATS, NPY, PNG, find};
 use gonio::io::{Format, Provenance, TableEntry, TableSet, read_manifest, verify};
 use gonio::table::axis::{Axis, Mapping, Positions, Variable};
@@ -29,7 +30,7 @@ fn exr_holds_values_axes_and_provenance() {
         assert_eq!(image.text("gonio:unit"), table.quantity.unit);
         assert_eq!(image.text("gonio:subject"), table.subject);
         assert_eq!(image.text("gonio:rule"), table.rule);
-        assert_eq!(image.text("gonio:precision"), table.precision);
+        assert_eq!(image.text("gonio:precision"), table.precision.name());
         assert_eq!(image.text("gonio:scene"), "scène.gltf");
         let json = |name: &str| -> Value { serde_json::from_str(image.text(name)).unwrap() };
         assert_eq!(json("gonio:parameters"), json!(table.parameters));
@@ -446,7 +447,7 @@ fn table(name: &str, axes: Vec<Axis>, channels: &[&str], f: impl Fn(&[f64]) -> f
         rule: "warped 32 v × 2·24 φ".into(),
         storage: Storage::F32,
         bilinear: None,
-        precision: "f32".into(),
+        precision: Precision::F32,
         error: TableError {
             kind: ErrorKind::Relative,
             floor: Some(1e-6),

@@ -3,6 +3,7 @@
 
 use crate::common::*;
 use crate::promises::{INTEGRAL_F32, energy, integral_f32};
+use gonio::base::precision::Precision;
 use gonio::check::Check;
 use gonio::model::{Integral, MODELS, Model};
 use gonio::plan::TablePlan;
@@ -218,7 +219,7 @@ fn meet_a_billionth_in_f64() {
             "{} in {}: {worst:.1e} over {} texels",
             quantity.name, table.precision, table.error.texels_checked
         );
-        assert_eq!(table.precision, "f64");
+        assert_eq!(table.precision, Precision::F64);
         assert!(table.error.texels_checked >= 64 && worst <= 1e-9, "{:?}", table.error);
     }
 }

@@ -185,7 +185,7 @@ fn shaders_have_their_parts_alone() {
     for model in MICROFACETS.iter() {
         let own: &[Kernel] = match model.integral {
             Integral::Slopes(_) => &slopes,
-            Integral::Mapped(_) => &[Kernel::Mapped],
+            Integral::Listed(_) => &[Kernel::Listed],
             _ => &[],
         };
         let sampling = if model.has_samplers() { &sampling[..] } else { &[] };

@@ -6,7 +6,7 @@ use crate::backend::gpu::loop_limit::SAFE_TURNS;
 use crate::base::error::{Error, Result};
 use crate::base::precision::Precision;
 use crate::base::timings::Stopwatch;
-use crate::integrate::direction_rule::DirectionRule;
+use crate::integrate::listed_rule::ListedRule;
 use crate::integrate::rule_set::RuleSet;
 use crate::integrate::slope_rule::TILE_ALPHAS;
 use crate::model::Model;
@@ -344,7 +344,7 @@ impl Baker {
     }
 
     /// Uploads the points of some inner integrals whose directions the host finds.
-    fn points_of(&self, stage: &Stage, rule: &DirectionRule, range: Range<usize>) -> Vec<wgpu::Buffer> {
+    fn points_of(&self, stage: &Stage, rule: &ListedRule, range: Range<usize>) -> Vec<wgpu::Buffer> {
         let upload = Upload { baker: self, precision: stage.precision };
         upload.direction_sums(&rule.integrals(range)).into()
     }

@@ -7,7 +7,7 @@ use crate::base::half_angle::{Azimuth, Pair};
 use crate::base::precision::{INTEGRAL_F32, Precision};
 use crate::base::sequence::stride;
 use crate::integrate::chebyshev::Matrix;
-use crate::integrate::direction_rule::{DirectionRule, DirectionSum};
+use crate::integrate::listed_rule::{ListedRule, ListedSum};
 use crate::integrate::rule_set::{InnerRule, RuleKind, RuleSet, ValueGrid};
 use crate::integrate::sample_rule::Sampler;
 use crate::integrate::scale::LobeScale;
@@ -39,7 +39,7 @@ pub(crate) struct Stage {
     /// The rows of a table of values, which are uploaded for each tile.
     pub rows: Option<ValueRows>,
     /// The directions that the host finds, which are uploaded for each dispatch.
-    pub directions: Option<DirectionRule>,
+    pub directions: Option<ListedRule>,
     /// The number of results for each unit of the table (see `ResultLayout`) or source of its α; 0 of outer sums.
     pub per_unit: usize,
     /// The number of units whose results one invocation makes.
@@ -218,7 +218,7 @@ impl Dispatches {
     /// The bytes of points that are uploaded for each unit.
     pub fn uploaded_bytes_per_unit(&self) -> usize {
         let points =
-            if self.inner.kernel == Kernel::Mapped { self.inner.per_unit * self.inner.cost } else { 0 };
+            if self.inner.kernel == Kernel::Listed { self.inner.per_unit * self.inner.cost } else { 0 };
         points * POINT * self.inner.precision.bytes()
     }
 }
@@ -269,7 +269,7 @@ impl Stage {
                 (kernel, rule.chunk, rows, inputs)
             }
             // The points are uploaded for each dispatch.
-            InnerRule::Directions(_) => (Kernel::Mapped, 0, 0, vec![upload.reals(alphas)]),
+            InnerRule::Listed(_) => (Kernel::Listed, 0, 0, vec![upload.reals(alphas)]),
             InnerRule::ClosedForm { mus, .. } => {
                 (Kernel::Analytic, 0, 0, vec![upload.reals(alphas), upload.reals(mus)])
             }
@@ -291,7 +291,7 @@ impl Stage {
             job,
             inputs,
             rows: None,
-            directions: if let InnerRule::Directions(rule) = inner { Some(rule.clone()) } else { None },
+            directions: if let InnerRule::Listed(rule) = inner { Some(rule.clone()) } else { None },
             per_unit: 1,
             units,
             cost: units * inner.cost(),
@@ -367,13 +367,13 @@ pub(crate) struct Upload<'a> {
 impl Upload<'_> {
     /// Uploads the points of some inner integrals, one after the other: the range of points of each, the closed forms of
     /// those without points, and all points.
-    pub fn direction_sums(&self, sums: &[DirectionSum]) -> [wgpu::Buffer; 3] {
+    pub fn direction_sums(&self, sums: &[ListedSum]) -> [wgpu::Buffer; 3] {
         let (mut ranges, mut limits, mut points) = (Vec::new(), Vec::new(), Vec::new());
         for sum in sums {
             let first = points.len() as u32;
             limits.push(match sum {
-                DirectionSum::Limit(limit) => *limit,
-                DirectionSum::Samples(samples) => {
+                ListedSum::Limit(limit) => *limit,
+                ListedSum::Samples(samples) => {
                     points.extend(samples.iter().map(|sample| sample.to_array()));
                     [0.0; 2]
                 }

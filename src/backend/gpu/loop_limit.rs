@@ -41,7 +41,7 @@ fn turns(rules: &RuleSet) -> usize {
                 InnerRule::Product { azimuths, .. } => in_blocks(azimuths.len()),
                 // And a loop over four α.
                 InnerRule::Samples(rule) => in_blocks(rule.chunk) + 5,
-                InnerRule::Directions(rule) => in_blocks(rule.max_cost()) + rule.max_cost().div_ceil(32),
+                InnerRule::Listed(rule) => in_blocks(rule.max_cost()) + rule.max_cost().div_ceil(32),
                 InnerRule::ClosedForm { .. } => 0,
             };
             outer.iter().map(|matrix| in_blocks(matrix.columns)).fold(inner, usize::max)
@@ -49,7 +49,7 @@ fn turns(rules: &RuleSet) -> usize {
     }
 }
 
-/// The turns of a sum in blocks of 32, as `product.wgsl`, `mapped.wgsl`, `sampling.wgsl` and `sum.wgsl` have it.
+/// The turns of a sum in blocks of 32, as `product.wgsl`, `listed.wgsl`, `sampling.wgsl` and `sum.wgsl` have it.
 fn in_blocks(terms: usize) -> usize {
     terms + 2 * terms.div_ceil(32) + 1
 }
@@ -102,9 +102,9 @@ mod tests {
                     let turns = turns(&RuleSet::new(&plan, &plan.lobes()[0]));
                     let limit = match model.integral {
                         // A table that takes more is refused where that is not known to run.
-                        Integral::Mapped(_) if is_fine(tolerance) => u32::MAX,
-                        Integral::Mapped(_) if model.is_anisotropic() && tolerance < 0.9e-5 => u32::MAX,
-                        Integral::Mapped(_) => STRICTEST,
+                        Integral::Listed(_) if is_fine(tolerance) => u32::MAX,
+                        Integral::Listed(_) if model.is_anisotropic() && tolerance < 0.9e-5 => u32::MAX,
+                        Integral::Listed(_) => STRICTEST,
                         _ if tolerance > 0.9e-8 => SAFE_TURNS,
                         _ => STRICTEST,
                     };

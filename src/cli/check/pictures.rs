@@ -3,6 +3,7 @@
 
 use crate::base::angles::Angles;
 use crate::base::error::Result;
+use crate::base::precision::Precision;
 use crate::io::format::PNG;
 use crate::io::{Outputs, Provenance};
 use crate::table::axis::{Axis, Variable};
@@ -145,7 +146,7 @@ fn table(
         rule: "gonio check".into(),
         storage: Storage::F64,
         bilinear: None,
-        precision: "as the device computes it".into(),
+        precision: Precision::F32,
         error,
         seconds: 0.0,
     }

@@ -131,7 +131,7 @@ fn describe(table: &Table) -> serde_json::Result<BTreeMap<String, String>> {
         ("axes", json(&entry::axes(table))?),
         ("channels", json(&table.channels)?),
         ("rule", table.rule.clone()),
-        ("precision", table.precision.clone()),
+        ("precision", table.precision.to_string()),
         // OpenEXR has neither doubles nor integers of 16 bits: those are f32 here, to the nearest.
         ("storage", table.storage.name().into()),
         ("bilinear", json(&table.bilinear)?),

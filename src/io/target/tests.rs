@@ -1,6 +1,7 @@
 //! A small table for targets that order, flip, combine and round it.
 
 use super::*;
+use crate::base::precision::Precision;
 use crate::io::Provenance;
 use crate::io::format::NPY;
 use crate::table::axis::{Mapping, Positions};
@@ -37,7 +38,7 @@ fn table() -> Table {
         rule: "pointwise".into(),
         storage: Storage::F32,
         bilinear: None,
-        precision: "f32".into(),
+        precision: Precision::F32,
         error: TableError {
             measured_max: Some(1e-6),
             worst: BTreeMap::from([("theta_i".into(), 0.0), ("channel".into(), 1.0)]),

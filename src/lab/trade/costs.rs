@@ -82,7 +82,7 @@ pub fn costs(
                 quantity: quantity.name,
                 tolerance,
                 evaluations,
-                precision: table.precision,
+                precision: table.precision.to_string(),
                 error,
                 texels: plan.texels(),
             });

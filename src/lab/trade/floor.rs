@@ -1,6 +1,7 @@
 //! What a table would take if the device did nothing but write it, or nothing but its arithmetic.
 
 use crate::backend::gpu::Rates;
+use crate::model::GGX;
 use crate::plan::TablePlan;
 use crate::table::rule::Rule;
 use serde::Serialize;
@@ -32,7 +33,7 @@ impl Floor {
 /// between its integrals. So it is a floor.
 pub(super) fn operations(plan: &TablePlan) -> Option<f64> {
     let [lobe] = plan.lobes() else { return None };
-    (lobe.model().name == "ggx").then_some(match plan.rule() {
+    (lobe.model() == &GGX).then_some(match plan.rule() {
         // ndf_map 12, slope_term 36 with masking 8 and Fresnel 4, the loop of `integral` 4
         Rule::Warped => 52.0,
         // half_vector 10, ndf 5, fresnel 8, their product, weight and sum 7; visibility is lifted

@@ -2,6 +2,7 @@
 
 use crate::bake::Evaluator;
 use crate::base::error::{Error, Result};
+use crate::base::precision::Precision;
 use crate::base::timings::Timings;
 use crate::check::Check;
 use crate::light::Light;
@@ -38,9 +39,9 @@ impl Order<'_> {
         })?;
         stages.dispatch += seconds;
         let (precision, estimate) = match on_device {
-            true => ("f32", PEAK * ROUNDINGS * 0.5f64.powi(24)),
+            true => (Precision::F32, PEAK * ROUNDINGS * 0.5f64.powi(24)),
             // Differences of sines over cells of 16384 columns.
-            false => ("f64", 1e-11),
+            false => (Precision::F64, 1e-11),
         };
         let axes = [Axis::listed(Variable::Harmonic, (0..9).map(f64::from).collect())?];
         let table = |quantity: &'static Quantity, values: &Coefficients, truth: &Coefficients| {

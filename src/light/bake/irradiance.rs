@@ -2,6 +2,7 @@
 
 use crate::bake::Evaluator;
 use crate::base::error::Result;
+use crate::base::precision::Precision;
 use crate::base::timings::Stopwatch;
 use crate::base::timings::Timings;
 use crate::light::bake::{
@@ -88,7 +89,7 @@ impl Order<'_> {
         Ok(RgbValues {
             rgb: all.rgb,
             rule,
-            precision: if is_f32 && !clear.is_empty() { "f32" } else { "f64" },
+            precision: if is_f32 && !clear.is_empty() { Precision::F32 } else { Precision::F64 },
             estimate: Some(all.estimate),
             seconds: start.seconds(),
         })
@@ -144,7 +145,7 @@ fn closed(light: &Light, normals: &[[f64; 3]]) -> RgbValues {
     RgbValues {
         rgb,
         rule: "closed form".into(),
-        precision: "f64",
+        precision: Precision::F64,
         // Roundings of products and of an arc cosine.
         estimate: Some(1e-12 + STORED),
         seconds: start.seconds(),

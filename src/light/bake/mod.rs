@@ -7,6 +7,7 @@ mod radiosity;
 
 use crate::bake::{Evaluator, Observer};
 use crate::base::error::{Error, Result};
+use crate::base::precision::Precision;
 use crate::base::timings::Stopwatch;
 use crate::check::{Check, ErrorTally, reference_of_model, sample};
 use crate::light::exitant::Integrated;
@@ -52,7 +53,7 @@ pub struct Order<'a> {
 struct RgbValues {
     rgb: Vec<[f64; 3]>,
     rule: String,
-    precision: &'static str,
+    precision: Precision,
     estimate: Option<f64>,
     seconds: f64,
 }
@@ -61,10 +62,10 @@ struct RgbValues {
 type Truths = Vec<(usize, [f64; 3])>;
 
 impl Order<'_> {
-    fn precision(&self) -> &'static str {
+    fn precision(&self) -> Precision {
         match self.evaluator {
-            Evaluator::Device(_) => "f32",
-            Evaluator::Cpu => "f64",
+            Evaluator::Device(_) => Precision::F32,
+            Evaluator::Cpu => Precision::F64,
         }
     }
 
@@ -123,7 +124,7 @@ impl Order<'_> {
             rule,
             storage: Storage::F32,
             bilinear: None,
-            precision: precision.into(),
+            precision,
             error: tally.finish(),
             seconds,
         };

@@ -20,8 +20,8 @@ use crate::base::error::{Error, Result};
 use crate::integrate::scale::LobeScale;
 use crate::light::irradiance;
 use crate::light::{Frame, Light, direction};
-use crate::model::Integral;
 use crate::model::lobe::Lobe;
+use crate::model::{Integral, LAMBERT};
 use std::f64::consts::PI;
 
 /// A surface and where it is seen from.
@@ -65,7 +65,7 @@ pub fn radiance(
     observer: &dyn Observer,
 ) -> Result<Vec<Integrated>> {
     let mut all = vec![Integrated { value: [0.0; 3], error: 0.0 }; views.len()];
-    let is_flat = |lobe: &&Lobe| lobe.model().name == "lambert" && lobe.factors().is_empty();
+    let is_flat = |lobe: &&Lobe| lobe.model() == &LAMBERT && lobe.factors().is_empty();
     let is_delta = |lobe: &&Lobe| lobe.is_delta();
     let flat: Vec<_> = lobes.iter().filter(is_flat).collect();
     let deltas: Vec<_> = lobes.iter().filter(is_delta).collect();

@@ -38,7 +38,7 @@ pub(crate) static MODEL: Model = Model {
     rho_bound: 1.0,
     parts: &[schlick::PART, cosine::PART, part!("classic/ashikhmin_shirley")],
     value_f32: COSINE_F32,
-    integral: Integral::Mapped(Map {
+    integral: Integral::Listed(Map {
         samples: |fixed, s, tolerance| cosine::samples(fixed, s, tolerance, Kinks::OF_EQUAL_COSINES),
         most: |_, tolerance| cosine::most(tolerance, &Kinks::OF_EQUAL_COSINES),
         mean: Some(half_vector::mean),

@@ -38,7 +38,7 @@ pub(crate) static MODEL: Model = Model {
     rho_bound: 1.0,
     parts: &[cosine::PART, part!("classic/blinn")],
     value_f32: COSINE_F32,
-    integral: Integral::Mapped(Map {
+    integral: Integral::Listed(Map {
         samples: |fixed, s, tolerance| cosine::samples(fixed, s, tolerance, Kinks::NONE),
         most: |_, tolerance| cosine::most(tolerance, &Kinks::NONE),
         mean: None,

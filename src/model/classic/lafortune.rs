@@ -42,7 +42,7 @@ pub(crate) static MODEL: Model = Model {
     rho_bound: 1.0,
     parts: &[axis::PART, part!("classic/lafortune")],
     value_f32: AXIS_F32,
-    integral: Integral::Mapped(Map {
+    integral: Integral::Listed(Map {
         samples: |fixed, s, tolerance| axis::samples(fixed, &of(&s.parameters), s.alpha, tolerance),
         most: |_, tolerance| axis::most(tolerance),
         mean: Some(mean),

@@ -45,7 +45,7 @@ pub(crate) static MODEL: Model = Model {
     rho_bound: 1.0,
     parts: &[axis::PART, part!("classic/phong")],
     value_f32: AXIS_F32,
-    integral: Integral::Mapped(Map {
+    integral: Integral::Listed(Map {
         samples: |fixed, s, tolerance| axis::samples(fixed, &LobeAxis::MIRROR, s.alpha, tolerance),
         most: |_, tolerance| axis::most(tolerance),
         mean: Some(half_vector::mean),

@@ -38,7 +38,7 @@ pub(crate) static MODEL: Model = Model {
     rho_bound: 1.0,
     parts: &[part!("classic/ward_dur", "elementary")],
     value_f32: GAUSSIAN_F32,
-    integral: Integral::Mapped(Map {
+    integral: Integral::Listed(Map {
         samples: |fixed, s, tolerance| gaussian::samples(fixed, s, tolerance, counts(tolerance), KINKS),
         most: |_, tolerance| half_vector::most(&KINKS, [counts(tolerance); 2]),
         mean: None,

@@ -40,7 +40,7 @@ pub(crate) static MODEL: Model = Model {
     rho_bound: 1.5127,
     parts: &[grazing::PART, part!("diffuse/disney_subsurface")],
     value_f32: VALUE_F32,
-    integral: Integral::Mapped(Map {
+    integral: Integral::Listed(Map {
         samples,
         most: |_, tolerance| most(tolerance),
         mean: None,

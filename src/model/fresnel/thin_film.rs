@@ -105,7 +105,7 @@ impl Fresnel for ThinFilm {
             place: F0,
         },
         Parameter {
-            name: "channel",
+            name: Parameter::CHANNEL,
             summary: "whose reflectance it is: 0 is R, 1 is G and 2 is B, as R, G and B of a material have it",
             unit: "",
             range: [0.0, 2.0],

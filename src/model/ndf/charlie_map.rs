@@ -203,7 +203,7 @@ mod tests {
         let mut failed = Vec::new();
         for (name, of_normal) in models {
             let model = model::find(name).unwrap();
-            let Integral::Mapped(map) = model.integral else { unreachable!() };
+            let Integral::Listed(map) = model.integral else { unreachable!() };
             let worst = (0..61).into_par_iter().map(|k| {
                 // Additive recurrences of two irrationals: even over α's logarithm, and over μ or its logarithm.
                 let (u, v) = ((k as f64 * 0.754_877_666).fract(), (k as f64 * 0.569_840_291).fract());

@@ -261,7 +261,7 @@ mod tests {
         let mut failed = Vec::new();
         for (name, plenty) in models {
             let model = model::find(name).unwrap();
-            let Integral::Mapped(map) = model.integral else { unreachable!() };
+            let Integral::Listed(map) = model.integral else { unreachable!() };
             let worst = (0..36).into_par_iter().map(|k| {
                 // Additive recurrences of irrationals: even over all three.
                 let [u, v, w] =
@@ -312,7 +312,7 @@ mod tests {
             [("gtr", mean as fn(f64) -> Vec<Node>), ("gtr-v-cavity-schlick", half_vector::mean)]
         {
             let model = model::find(name).unwrap();
-            let Integral::Mapped(map) = model.integral else { unreachable!() };
+            let Integral::Listed(map) = model.integral else { unreachable!() };
             let settings = [(1e-3, 1.0), (0.01, 1.0), (0.2, 1.0), (0.01, 10.0)];
             for &(alpha, gamma) in if crate::base::is_thorough() { &settings[..] } else { &settings[2..] } {
                 let s = setting(alpha, gamma);

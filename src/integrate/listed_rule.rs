@@ -11,8 +11,8 @@ use rayon::prelude::*;
 
 /// The inner integrals over listed directions, one for each (setting, fixed direction).
 #[derive(Clone)]
-pub(crate) struct DirectionRule {
-    source: DirectionSource,
+pub(crate) struct ListedRule {
+    source: ListedSource,
     pub fixed: Vec<Fixed>,
     pub settings: Vec<Setting>,
     pub tolerance: f64,
@@ -24,7 +24,7 @@ pub(crate) struct DirectionRule {
 
 /// The origin of a rule's directions.
 #[derive(Clone, Copy)]
-pub(crate) enum DirectionSource {
+pub(crate) enum ListedSource {
     /// The map of the model.
     Map(Map),
     /// The product rule of a diffuse lobe.
@@ -34,7 +34,7 @@ pub(crate) enum DirectionSource {
 }
 
 /// An inner integral: a sum over directions, or (A, B) in closed form.
-pub(crate) enum DirectionSum {
+pub(crate) enum ListedSum {
     Samples(Vec<Sample>),
     Limit([f64; 2]),
 }
@@ -46,8 +46,8 @@ pub(crate) struct At {
     pub scale: LobeScale,
 }
 
-impl DirectionRule {
-    pub fn new(source: DirectionSource, fixed: Vec<Fixed>, settings: Vec<Setting>, tolerance: f64) -> Self {
+impl ListedRule {
+    pub fn new(source: ListedSource, fixed: Vec<Fixed>, settings: Vec<Setting>, tolerance: f64) -> Self {
         Self { source, fixed, settings, tolerance, scales: Vec::new(), fixed_is_exitant: false }
     }
 
@@ -64,28 +64,26 @@ impl DirectionRule {
     }
 
     /// The inner integral of an index, in which the fixed direction turns fastest, as directions.
-    pub fn integral(&self, index: usize) -> DirectionSum {
+    pub fn integral(&self, index: usize) -> ListedSum {
         let At { setting, fixed, scale } = &self.at(index);
         let sum = match self.source {
-            DirectionSource::Map(map) => match (map.limit)(fixed.mu, setting) {
-                Some(limit) => DirectionSum::Limit(limit),
-                None => DirectionSum::Samples((map.samples)(fixed, setting, self.tolerance)),
+            ListedSource::Map(map) => match (map.limit)(fixed.mu, setting) {
+                Some(limit) => ListedSum::Limit(limit),
+                None => ListedSum::Samples((map.samples)(fixed, setting, self.tolerance)),
             },
-            DirectionSource::Product(rule) => {
-                DirectionSum::Samples(rule.samples(fixed, scale, self.tolerance))
-            }
-            DirectionSource::Delta(limit) => DirectionSum::Limit(limit(fixed.mu, setting)),
+            ListedSource::Product(rule) => ListedSum::Samples(rule.samples(fixed, scale, self.tolerance)),
+            ListedSource::Delta(limit) => ListedSum::Limit(limit(fixed.mu, setting)),
         };
         if scale.is_one() {
             return sum;
         }
         match sum {
-            DirectionSum::Limit(limit) => {
-                DirectionSum::Limit(limit.map(|x| x * self.factor(scale, fixed, fixed.mu)))
+            ListedSum::Limit(limit) => {
+                ListedSum::Limit(limit.map(|x| x * self.factor(scale, fixed, fixed.mu)))
             }
-            DirectionSum::Samples(mut samples) => {
+            ListedSum::Samples(mut samples) => {
                 samples.iter_mut().for_each(|s| s.weight *= self.factor(scale, fixed, s.pair.mu_e));
-                DirectionSum::Samples(samples)
+                ListedSum::Samples(samples)
             }
         }
     }
@@ -103,8 +101,8 @@ impl DirectionRule {
             return sum;
         }
         match self.integral(index) {
-            DirectionSum::Limit(limit) => return limit,
-            DirectionSum::Samples(samples) => {
+            ListedSum::Limit(limit) => return limit,
+            ListedSum::Samples(samples) => {
                 let setting = &self.settings[index / self.fixed.len()];
                 for Sample { pair, azimuth, weight } in &samples {
                     add(*weight, (model.lobe)(pair, azimuth, setting));
@@ -119,7 +117,7 @@ impl DirectionRule {
         let facets = model.microfacet?.facets.as_ref()?;
         let At { setting, fixed, .. } = self.at(index);
         match self.source {
-            DirectionSource::Map(map) => (map.limit)(fixed.mu, &setting).is_none().then_some(facets),
+            ListedSource::Map(map) => (map.limit)(fixed.mu, &setting).is_none().then_some(facets),
             _ => None,
         }
     }
@@ -142,24 +140,24 @@ impl DirectionRule {
     }
 
     /// The inner integrals of a range of indices, on all cores.
-    pub fn integrals(&self, range: std::ops::Range<usize>) -> Vec<DirectionSum> {
+    pub fn integrals(&self, range: std::ops::Range<usize>) -> Vec<ListedSum> {
         range.into_par_iter().map(|index| self.integral(index)).collect()
     }
 
     /// The largest number of evaluations of an inner integral.
     pub fn max_cost(&self) -> usize {
         let cost = |(row, setting): (usize, &Setting)| match self.source {
-            DirectionSource::Map(map) => {
+            ListedSource::Map(map) => {
                 // Each kink makes two more panels in each azimuth, and factors take twice the nodes in both dimensions.
                 let factored = self.fixed.iter().any(|fixed| fixed.factored);
                 let panels = 1 + 2 * self.scales.get(row).map_or(0, LobeScale::max_kinks);
                 let nodes = if factored { 4 } else { 1 };
                 panels * nodes * (map.most)(setting, self.tolerance)
             }
-            DirectionSource::Product(rule) => {
+            ListedSource::Product(rule) => {
                 rule.max_cost(&self.scales.get(row).cloned().unwrap_or_default(), self.tolerance)
             }
-            DirectionSource::Delta(_) => 1,
+            ListedSource::Delta(_) => 1,
         };
         self.settings.iter().enumerate().map(cost).max().unwrap_or(1)
     }
