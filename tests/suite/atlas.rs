@@ -14,7 +14,8 @@ const BUDGET: u64 = 1_000_000;
 
 fn pages(evaluator: &Evaluator) -> Vec<Page> {
     let models = MODELS.into_iter().filter(|model| !model.is_delta());
-    models.map(|model| atlas::measure_model(evaluator, model, BUDGET, &Unobserved).unwrap()).collect()
+    let budget = if is_thorough() { BUDGET } else { BUDGET / 4 };
+    models.map(|model| atlas::measure_model(evaluator, model, budget, &Unobserved).unwrap()).collect()
 }
 
 /// The device's, measured once.

@@ -247,7 +247,7 @@ fn values_agree_with_the_reference() {
 /// Integrals meet the tolerance that is asked for, on both evaluators, with and without a lobe.
 #[test]
 fn integrals_meet_every_tolerance() {
-    for film in FILMS {
+    for film in some_of(&FILMS, 2) {
         assert_term_meets_every_tolerance([under("ggx"), under("mirror")], |plan| with(plan, film));
     }
 }
