@@ -24,6 +24,7 @@ mod agreement;
 mod albedo;
 mod bits;
 mod energy;
+mod hemisphere;
 mod inputs;
 mod limits;
 mod probe;
@@ -322,11 +323,19 @@ fn judge(subject: &mut dyn Subject, options: &VerifyOptions, observer: &dyn Obse
     // Half of the values go to the integrals unless the subject does them, the rest to each promise alike.
     let values = if probe.has_integrals()? { options.budget } else { options.budget / 2 };
     let inputs = Inputs::new(probe.parameters(), values / properties.len().max(1) as u64);
-    let mut worst = Vec::new();
+    let (mut worst, mut peaks) = (Vec::new(), Vec::new());
     for property in &mut properties {
         observer.begin(property.name());
-        worst.push(search::hunt(property.as_mut(), &mut probe, &inputs, options.search, observer)?);
+        let found = search::hunt(property.as_mut(), &mut probe, &inputs, options.search, observer)?;
+        worst.push(found.first().cloned());
+        // The hunt for what overflows climbs on f.
+        peaks.extend(found.into_iter().filter(|_| property.name() == bits::FINITE));
     }
+    let is_kept = |name: &str| {
+        let mut found = properties.iter().zip(&worst).filter(|(property, _)| property.name() == name);
+        found.any(|(p, worst)| worst.as_ref().is_some_and(|w: &search::Worst| w.deviation <= p.limit()))
+    };
+    let symmetry = Symmetry { isotropic: is_kept("isotropy"), bilateral: is_kept("bilateral") };
     // What is declared to gain without bound is not judged by how much it gains.
     let (boundless, declared): (Vec<_>, Vec<_>) = declared
         .into_iter()
@@ -336,7 +345,7 @@ fn judge(subject: &mut dyn Subject, options: &VerifyOptions, observer: &dyn Obse
     } else if let Some(energy) = albedo::check(&mut probe, options.search, tolerances.energy, observer)? {
         Some(energy)
     } else {
-        Some(energy::check(&mut probe, options, tolerances.energy, observer)?)
+        Some(energy::check(&mut probe, options, symmetry, &peaks, tolerances.energy, observer)?)
     };
 
     // Every value was looked at, whatever it was evaluated for: orbits and integrals too.

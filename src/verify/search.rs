@@ -32,14 +32,14 @@ const BATCH: u64 = 1 << 14;
 /// The candidates of a batch.
 const CANDIDATES: usize = 4;
 
-/// The worst input of a property; none where no input says anything.
+/// The worst inputs of a property, the worst first; none where no input says anything.
 pub(super) fn hunt(
     property: &mut dyn Property,
     probe: &mut Probe,
     inputs: &Inputs,
     search: bool,
     observer: &dyn Observer,
-) -> Result<Option<Worst>> {
+) -> Result<Vec<Worst>> {
     let mut seeds = Seeds::default();
     let share = if search { 0.8 } else { 1.0 };
     let size = orbit_size(property);
@@ -64,8 +64,9 @@ pub(super) fn hunt(
             observer.advance((1.0 - share) / starts.len() as f64)?;
         }
     }
-    // The first of equals.
-    Ok(seeds.0.into_iter().rev().max_by(|a, b| a.deviation.total_cmp(&b.deviation)))
+    // Stable: the first of equals.
+    seeds.0.sort_by(|a, b| b.deviation.total_cmp(&a.deviation));
+    Ok(seeds.0)
 }
 
 /// Evaluates the orbits of some inputs at a setting and keeps the worst.
