@@ -47,11 +47,14 @@ const CONFIRMED: usize = 4;
 /// Rounds of a climb, and tries of a round.
 const ROUNDS: usize = 12;
 const TRIES: usize = 8;
-/// The widths of the charts that confirm, and by how much they are turned about the normal: enough to round anew; where
-/// isotropy is promised, anywhere.
-const CHARTS: [(f64, f64, f64); 3] = [(0.37, 1.3e-4, 0.7), (1.9, -2.9e-4, 2.9), (0.83, 4.7e-4, 4.3)];
-
-/// A gain that is not excluded is spoken of from here on.
+/// The charts that confirm: a factor of their widths; a turn about the normal, enough to round anew, and where isotropy is
+/// promised anywhere; and a step of cos θi in units of [`ROUNDING`].
+const CHARTS: [(f64, f64, f64, f64); 3] =
+    [(0.37, 1.3e-4, 0.7, 1.1), (1.9, -2.9e-4, 2.9, -1.7), (0.83, 4.7e-4, 4.3, 2.9)];
+/// 2⁻²³, two spacings of a cosine in f32; and the step of θi at most, rad and of cos θi.
+const ROUNDING: f64 = 1.2e-7;
+const STEP: f64 = 2e-4;
+/// A gain that is not excluded is looked into and spoken of from here on.
 const CLEAR: f64 = 1e-3;
 
 #[derive(Clone, Copy)]
@@ -73,9 +76,15 @@ pub(super) struct Incidence {
 struct Place {
     integral: Integral,
     setting: Vec<f64>,
+    /// Whether it was refined beyond the scan.
+    is_close: bool,
 }
 
 impl Place {
+    fn new(integral: Integral, setting: &[f64]) -> Self {
+        Self { integral, setting: setting.to_vec(), is_close: false }
+    }
+
     fn certain(&self) -> f64 {
         self.integral.rho().certain()
     }
@@ -145,17 +154,31 @@ pub(super) fn check(
         {
             let mut integral = Integral::new(theta, phi, &layout);
             integral.seed(theta_e, delta, SEED_SIZE);
-            let mut place = [Place { integral, setting: peak.setting.clone() }];
+            let mut place = [Place::new(integral, &peak.setting)];
             refine_all(probe, &mut place, SCAN)?;
             places.extend(place);
         }
     }
 
-    places.sort_by(|a, b| b.possible().total_cmp(&a.possible()));
-    let closely = places.len().min(CLOSELY);
-    refine_all(probe, &mut places[..closely], CLOSE)?;
+    let scanned = probe.evaluated;
+    // The second round and later ones are for gains that are not excluded, while there is budget and no gain is certain.
+    for round in 0.. {
+        places.sort_by(|a, b| a.is_close.cmp(&b.is_close).then(b.possible().total_cmp(&a.possible())));
+        let close = places.iter().filter(|place| place.is_close);
+        let certain = close.map(Place::certain).fold(f64::NEG_INFINITY, f64::max);
+        let is_open = |place: &&Place| !place.is_close && (round == 0 || place.possible() > 1.0 + CLEAR);
+        let count = places.iter().take(CLOSELY).take_while(is_open).count();
+        let spent = probe.evaluated - scanned;
+        if count == 0 || round > 0 && (certain > 1.0 + tolerance || spent > options.budget / SHARE) {
+            break;
+        }
+        refine_all(probe, &mut places[..count], CLOSE)?;
+        places[..count].iter_mut().for_each(|place| place.is_close = true);
+        observer.advance(0.0)?;
+    }
     observer.advance(0.2)?;
     let least = places.iter().map(|place| place.integral.rho().value).fold(f64::INFINITY, f64::min);
+    // The first of equals.
     places.sort_by(|a, b| b.certain().total_cmp(&a.certain()));
     if options.search {
         for k in 0..CLIMBS.min(places.len()) {
@@ -177,14 +200,17 @@ pub(super) fn check(
         }
     }
     let largest = confirmed.iter().rev().max_by(|a, b| a.rho.certain().total_cmp(&b.rho.certain()));
-    let open = places.iter().map(Place::possible).fold(f64::NEG_INFINITY, f64::max);
     let mut finding = finding(probe, largest, least, tolerance);
-    let open_at = places.iter().find(|place| place.possible() == open);
-    if let (true, Some(place)) = (finding.verdict == Verdict::Kept && open > 1.0 + CLEAR, open_at) {
-        let (rho, degrees) = (place.integral.rho(), place.integral.theta_i.to_degrees());
+    let rest = places.iter().skip(confirmed.len()).map(|place| place.incidence(place.integral.rho()));
+    confirmed.extend(rest);
+    let open = confirmed.iter().max_by(|a, b| a.rho.possible().total_cmp(&b.rho.possible()));
+    if let (Verdict::Kept, Some(open)) = (finding.verdict, open.filter(|open| open.rho.possible() > 1.0 + CLEAR)) {
         finding.note = Some(format!(
-            "not confirmed within the budget: {:.4} ± {:.0e} at θi = {degrees:.5}°",
-            rho.value, rho.estimate
+            "no gain is confirmed, but one of {} is not excluded at θi = {:.6}°, where f32 directions and the budget leave {:.4} ± {}",
+            bar(open.rho.possible() - 1.0),
+            open.theta_i.to_degrees(),
+            open.rho.value,
+            bar(open.rho.estimate)
         ));
     }
     Ok(finding)
@@ -195,7 +221,7 @@ fn scan(probe: &mut Probe, setting: &[f64], incidences: &[[f64; 2]], layout: &La
     let new = |&[theta, phi]: &[f64; 2]| Integral::new(theta, phi, layout);
     let mut integrals: Vec<_> = incidences.iter().map(new).collect();
     refine(probe, setting, &mut integrals, SCAN.tolerance, SCAN.most)?;
-    Ok(integrals.into_iter().map(|integral| Place { integral, setting: setting.to_vec() }).collect())
+    Ok(integrals.into_iter().map(|integral| Place::new(integral, setting)).collect())
 }
 
 /// Refines places, those of one setting together.
@@ -240,7 +266,7 @@ fn climb(probe: &mut Probe, from: &Place, layout: &Layout, number: u64) -> Resul
             .collect();
         refine(probe, &setting, &mut integrals, CLIMB.tolerance, CLIMB.most)?;
         for integral in integrals {
-            let place = Place { integral, setting: setting.clone() };
+            let place = Place::new(integral, &setting);
             if place.certain() > best.certain() {
                 best = place;
             }
@@ -254,8 +280,11 @@ fn confirm(probe: &mut Probe, place: &Place, dense: &Layout, isotropic: bool) ->
     let Integral { theta_i, phi_i, .. } = place.integral;
     let mut integrals: Vec<_> = CHARTS
         .iter()
-        .map(|&(stretch, near, far)| {
+        .map(|&(stretch, near, far, steps)| {
             let turn = if isotropic { far } else { near };
+            let most = STEP * theta_i.cos().max(0.0);
+            let step = (steps * ROUNDING / theta_i.sin().max(ROUNDING)).clamp(-most, most);
+            let theta_i = (theta_i + step).abs().min(FRAC_PI_2);
             Integral::new(theta_i, phi_i + turn, &Layout { stretch, ..*dense })
         })
         .collect();
@@ -281,7 +310,7 @@ pub(super) fn finding(probe: &Probe, most: Option<&Incidence>, least: f64, toler
             phi_e: place.phi_i + PI,
         },
     };
-    let doubt = if estimate > 0.0 { format!(" ± {estimate:.0e}") } else { String::new() };
+    let doubt = if estimate > 0.0 { format!(" ± {}", bar(estimate)) } else { String::new() };
     let said = format!(
         "ρ_dh from {least:.6} to {value:.6}{doubt}: {}",
         match value - 1.0 {
@@ -290,4 +319,9 @@ pub(super) fn finding(probe: &Probe, most: Option<&Incidence>, least: f64, toler
         }
     );
     Finding::of(NAME, 1.0 + tolerance, said, Some(worst), probe)
+}
+
+/// An error bar, by one digit.
+fn bar(estimate: f64) -> String {
+    if estimate < 0.1 { format!("{estimate:.0e}") } else { format!("{estimate:.1}") }
 }

@@ -59,6 +59,8 @@ pub(super) struct Integral {
     cells: Vec<Cell>,
     /// Cells that are not evaluated yet.
     new: Vec<Cell>,
+    /// The error of cells that are not cut further.
+    left: f64,
 }
 
 /// The widths at which the logarithms begin: of lobes about θi, about the other ends; and of δφ at normal incidence.
@@ -69,8 +71,8 @@ const AZIMUTH_WIDTH: f64 = 1e-5;
 const CHANGE: f64 = 0.1;
 /// Bisections of a cell in all.
 const DEPTH: u8 = 60;
-/// Cells with less than this share of the largest error wait.
-const SHARE: f64 = 0.2;
+/// The share of the error that the cells of a round have.
+const BULK: f64 = 0.6;
 
 /// One coordinate from an origin: origin + sign · width · sinh(end · u), u in [0, 1].
 #[derive(Debug, Clone, Copy)]
@@ -162,6 +164,7 @@ impl Integral {
             fold: if bilateral { 2.0 } else { 1.0 },
             cells: Vec::new(),
             new: Vec::new(),
+            left: 0.0,
             rays,
         };
         // The logarithmic half that a lobe may be in, and the other.
@@ -221,7 +224,7 @@ impl Integral {
         let error: f64 = self.cells.iter().map(Cell::error).sum();
         let value = |c: usize| self.cells.iter().map(|cell| cell.sums[c]).sum::<f64>();
         let value = (0..3).map(value).fold(f64::NEG_INFINITY, f64::max);
-        Rho { value, estimate: error + 1e-15 * value.abs() }
+        Rho { value, estimate: error + self.left + 1e-15 * value.abs() }
     }
 
     /// Pairs evaluated.
@@ -235,19 +238,25 @@ impl Integral {
         if self.cells.is_empty() || estimate <= tolerance * value.abs().max(1.0) || self.spent() >= most {
             return;
         }
-        let largest = self.cells.iter().filter(|c| c.depth < DEPTH).map(Cell::error).fold(0.0, f64::max);
-        let (mut k, least) = (0, (SHARE * largest).max(0.1 * tolerance / self.cells.len() as f64));
-        while k < self.cells.len() {
-            if self.cells[k].error() < least || self.cells[k].depth >= DEPTH {
-                k += 1;
+        // The cells that have most of the error, as many as that takes (Dörfler 1996): few rounds, and few cells in vain.
+        self.cells.sort_by(|a, b| b.error().total_cmp(&a.error()));
+        let mut marked = 0.0;
+        let mut count = 0;
+        while count < self.cells.len() && marked < BULK * estimate {
+            marked += self.cells[count].error();
+            count += 1;
+        }
+        for mut cell in self.cells.drain(..count).collect::<Vec<_>>() {
+            if cell.depth >= DEPTH {
+                // As fine as f64 has it: its error stays, and is no one's to mend.
+                self.left += cell.error();
+                cell.errors = [0.0; 2];
+                self.cells.push(cell);
                 continue;
             }
-            let cell = self.cells.swap_remove(k);
             let along = usize::from(cell.errors[1] > cell.errors[0]);
             for mut half in cell.halves(along) {
                 half.parent = Some(cell.sums);
-                half.errors = [0.0; 2];
-                half.errors[along] = 1.0;
                 self.new.push(half);
             }
         }
