@@ -29,6 +29,10 @@ const LARGEST_STEP: f64 = 0.3;
 const DECADES: f64 = 7.0;
 /// Inputs of the scan in one go.
 const BATCH: u64 = 1 << 14;
+/// Inputs of the grid at every corner of many parameters, where there are up to so many; and at the ends of each two.
+const FEW: usize = 64;
+const CORNERS: usize = 256;
+const MORE: usize = 512;
 /// The candidates of a batch.
 const CANDIDATES: usize = 4;
 
@@ -55,6 +59,14 @@ pub(super) fn hunt(
             observer.advance(0.0)?;
         }
         observer.advance(share / inputs.settings.len() as f64)?;
+    }
+    // A dispatch for each of thousands of settings is for what is seen in one value.
+    let is_single = size == 1;
+    for setting in inputs.corners.iter().filter(|_| is_single || inputs.corners.len() <= CORNERS) {
+        judge(property, probe, setting, inputs.few(FEW), &mut seeds)?;
+    }
+    for setting in &inputs.pairs_of_ends {
+        judge(property, probe, setting, inputs.few(MORE), &mut seeds)?;
     }
     if search {
         let starts = seeds.0.clone();

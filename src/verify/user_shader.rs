@@ -14,6 +14,7 @@ use naga::valid::{Capabilities, ModuleInfo, ShaderStages, ValidationFlags, Valid
 use naga::{Function, Module, ScalarKind, TypeInner, VectorSize};
 use rayon::prelude::*;
 use std::borrow::Cow;
+use std::f64::consts::FRAC_PI_2;
 use std::sync::mpsc;
 use std::time::Duration;
 
@@ -233,22 +234,29 @@ fn show(module: &Module, function: &Function) -> String {
 /// The directions of a pair as the function gets them: (x, y, z), n = +z, rounded to f32.
 ///
 /// θ = π/2 is the horizon, z = 0. Where both are nearer to it than 2⁻²⁴ they are put there: f diverges, and a
-/// half vector of opposite directions would be 0. So is ωi alone where the cosine is to be divided out.
+/// half vector of opposite directions would be 0. So is ωi alone where the cosine is to be divided out. Beyond π/2 both
+/// are on the horizon to the bit. A sine or cosine of an azimuth that is 0 but for the digits of π is 0, and opposite
+/// azimuths are so to the bit.
 pub fn directions(angles: &Angles, cosine: bool) -> [[f32; 3]; 2] {
     let (mut mu_i, mut mu_e) = (cos(angles.theta_i), cos(angles.theta_e));
-    if mu_i < MU_MIN && (mu_e < MU_MIN || cosine) {
+    let is_exact = angles.theta_i > FRAC_PI_2 && angles.theta_e > FRAC_PI_2 && !cosine;
+    if !is_exact && mu_i < MU_MIN && (mu_e < MU_MIN || cosine) {
         mu_i = MU_MIN;
         mu_e = if mu_e < MU_MIN { MU_MIN } else { mu_e };
     }
-    [(angles.theta_i, angles.phi_i, mu_i), (angles.theta_e, angles.phi_e, mu_e)].map(|(theta, phi, mu)| {
-        let (sin_phi, cos_phi) = phi.sin_cos();
-        [theta.sin() * cos_phi, theta.sin() * sin_phi, mu].map(|x| x as f32)
+    let is_opposite = angles.delta_phi().abs() <= f64::EPSILON * (1.0 + angles.phi_e.abs());
+    let phi_e = if is_opposite { angles.phi_i } else { angles.phi_e };
+    let sign = if is_opposite { -1.0 } else { 1.0 };
+    let without_dust = |x: f64| if x.abs() < f64::EPSILON { 0.0 } else { x };
+    [(angles.theta_i, angles.phi_i, mu_i, 1.0), (angles.theta_e, phi_e, mu_e, sign)].map(|(theta, phi, mu, sign)| {
+        let (sin, [sin_phi, cos_phi]) = (sign * theta.sin(), [phi.sin(), phi.cos()].map(without_dust));
+        [sin * cos_phi, sin * sin_phi, mu].map(|x| x as f32)
     })
 }
 
 /// cos θ, 0 at the f64 nearest to π/2 and beyond.
 fn cos(theta: f64) -> f64 {
-    if theta < std::f64::consts::FRAC_PI_2 { theta.cos() } else { 0.0 }
+    if theta < FRAC_PI_2 { theta.cos() } else { 0.0 }
 }
 
 /// A user's BRDF on a device.
