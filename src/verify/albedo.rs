@@ -3,7 +3,8 @@
 
 use crate::bake::Observer;
 use crate::base::error::Result;
-use crate::verify::energy::{Incidence, NAME, Rho, finding};
+use crate::verify::energy::{Incidence, NAME, finding};
+use crate::verify::hemisphere::Rho;
 use crate::verify::inputs::{settings, thetas};
 use crate::verify::probe::Probe;
 use crate::verify::report::Finding;

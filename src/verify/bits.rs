@@ -3,12 +3,14 @@
 use crate::verify::probe::{Probe, is_non_finite};
 use crate::verify::{Angles, Property, Subject};
 
+pub(super) const FINITE: &str = "finite";
+
 /// No value is NaN or infinite. The search climbs on f itself, since what overflows grows first.
 pub(super) struct Finite;
 
 impl Property for Finite {
     fn name(&self) -> &'static str {
-        "finite"
+        FINITE
     }
 
     fn limit(&self) -> f64 {

@@ -1,59 +1,69 @@
-//! The white furnace: ρ_dh(ωi) = ∫ f cos θe dωe ≤ 1, by an integrator that knows nothing of f but where a
-//! mirror would reflect.
+//! The white furnace: ρ_dh(ωi) = ∫ f cos θe dωe ≤ 1, hunted over ωi and the parameters.
 //!
-//! With (t, ψ) polar coordinates around the mirror direction m of ωi, ψ = 0 towards the horizon below it,
+//! Each ρ has an error bar ([`hemisphere`](super::hemisphere)), and what is hunted is not the largest value but the
+//! largest that is certain, value − bar:
 //!
-//! ```text
-//! ωe = m cos t + (u cos ψ + v sin ψ) sin t,   u = ∂m/∂θ,   v = n × u,   dωe = sin t dt dψ
-//! cos θe = cos θi cos t − sin θi cos ψ sin t ≥ 0   ⇔   t ≤ t_max(ψ) = atan2(cos θi, sin θi cos ψ)
-//! t = w sinh x,   x in [0, asinh(t_max/w)]:   Gauss–Legendre in x sees all magnitudes from w to t_max
-//! ```
-//!
-//! For small cos θi the horizon jumps from t_max ≈ 0 to π at ψ = ±π/2, over a width of cos θi, so ψ is
-//! mapped by a sinh around these two as well: four panels ψ = ±(π/2 ± d sinh y), d = max(cos θi, 1e-3).
+//! 1. a scan of incidences and settings, with wide bars; then a scan of cos θi in steps of 1/128 at the settings that may
+//!    reach most, and a few incidences with small cells everywhere, and with the largest values of f as seeds;
+//! 2. those that may reach most, value + bar, with narrower bars;
+//! 3. a climb from the largest;
+//! 4. a confirmation: charts of other widths, whose nodes are others, at directions that round otherwise. Their spread is
+//!    part of the bar. No gain is reported without it.
 
 use crate::bake::Observer;
 use crate::base::error::Result;
-use crate::base::quadrature::{Node, gauss_legendre};
+use crate::verify::hemisphere::{Integral, Layout, Rho, refine};
 use crate::verify::inputs::{settings, thetas};
-use crate::verify::probe::{Probe, is_non_finite};
-use crate::verify::report::Finding;
+use crate::verify::probe::Probe;
+use crate::verify::report::{Finding, Verdict};
 use crate::verify::search::Worst;
 use crate::verify::sequence::Chance;
-use crate::verify::{Angles, VerifyOptions};
+use crate::verify::{Angles, ParameterRange, Symmetry, VerifyOptions};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 pub(super) const NAME: &str = "energy";
 
-/// The width w that nodes crowd to: lobes of width 1e-3 are seen by a third of them.
-const WIDTH: f64 = 3e-4;
-/// The least width of the panels' ends, as in the warped rule's azimuths.
-const JUMP: f64 = 1e-3;
-
-/// Two resolutions: nodes in x, and in each panel of ψ. Their difference is the estimate of the error.
-const COARSE: [usize; 2] = [32, 12];
-const FINE: [usize; 2] = [48, 16];
-
-/// Climbs, rounds and tries of the search.
-const SEEDS: usize = 4;
+/// The share of the budget that the hunt takes, roughly.
+const SHARE: u64 = 4;
+/// Bars of the scan, of what may reach most, and of a confirmation; and the pairs that each ρ may take for it.
+const SCAN: Effort = Effort { tolerance: 2e-3, most: 6_000 };
+const CLOSE: Effort = Effort { tolerance: 5e-5, most: 40_000 };
+const CLIMB: Effort = Effort { tolerance: 1e-4, most: 12_000 };
+const CONFIRM: Effort = Effort { tolerance: 1e-5, most: 100_000 };
+/// Pairs that a ρ of the scan takes, about.
+const USUAL: u64 = 3_000;
+/// Settings with a fine scan of cos θi, and its steps.
+const FINE_SETTINGS: usize = 4;
+const FINE: u32 = 128;
+/// Incidences with small cells everywhere, and how small, rad.
+const DENSE: u32 = 10;
+const SMALL: f64 = 0.3;
+/// The size of the cells around the largest values of f, rad.
+const SEED_SIZE: f64 = 1e-3;
+/// Those that are looked at closely, climbed from, and confirmed.
+const CLOSELY: usize = 24;
+const CLIMBS: usize = 3;
+const CONFIRMED: usize = 4;
+/// Rounds of a climb, and tries of a round.
 const ROUNDS: usize = 12;
-const TRIES: usize = 4;
+const TRIES: usize = 8;
+/// The charts that confirm: a factor of their widths; a turn about the normal, enough to round anew, and where isotropy is
+/// promised anywhere; and a step of cos θi in units of [`ROUNDING`].
+const CHARTS: [(f64, f64, f64, f64); 3] =
+    [(0.37, 1.3e-4, 0.7, 1.1), (1.9, -2.9e-4, 2.9, -1.7), (0.83, 4.7e-4, 4.3, 2.9)];
+/// 2⁻²³, two spacings of a cosine in f32; and the step of θi at most, rad and of cos θi.
+const ROUNDING: f64 = 1.2e-7;
+const STEP: f64 = 2e-4;
+/// A gain that is not excluded is looked into and spoken of from here on.
+const CLEAR: f64 = 1e-3;
 
-/// ρ_dh of one incidence, the largest over channels.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Rho {
-    pub value: f64,
-    /// How much two resolutions differ.
-    pub estimate: f64,
+#[derive(Clone, Copy)]
+struct Effort {
+    tolerance: f64,
+    most: usize,
 }
 
-impl Rho {
-    /// What is more than one, for certain.
-    fn certain(&self) -> f64 {
-        self.value - self.estimate
-    }
-}
-
+/// An incidence, a setting, and ρ there.
 pub(super) struct Incidence {
     pub rho: Rho,
     pub setting: Vec<f64>,
@@ -61,67 +71,235 @@ pub(super) struct Incidence {
     pub phi_i: f64,
 }
 
+/// An integral that may be refined further.
+#[derive(Clone)]
+struct Place {
+    integral: Integral,
+    setting: Vec<f64>,
+    /// Whether it was refined beyond the scan.
+    is_close: bool,
+}
+
+impl Place {
+    fn new(integral: Integral, setting: &[f64]) -> Self {
+        Self { integral, setting: setting.to_vec(), is_close: false }
+    }
+
+    fn certain(&self) -> f64 {
+        self.integral.rho().certain()
+    }
+
+    fn possible(&self) -> f64 {
+        self.integral.rho().possible()
+    }
+
+    fn incidence(&self, rho: Rho) -> Incidence {
+        let Integral { theta_i, phi_i, .. } = self.integral;
+        Incidence { rho, setting: self.setting.clone(), theta_i, phi_i }
+    }
+}
+
+/// Hunts for the largest ρ. `symmetry` is what f was found to have, `peaks` are the largest values of f.
 pub(super) fn check(
     probe: &mut Probe,
     options: &VerifyOptions,
+    symmetry: Symmetry,
+    peaks: &[Worst],
     tolerance: f64,
     observer: &dyn Observer,
 ) -> Result<Finding> {
     observer.begin(NAME);
-    let rules = Rules::new();
-    let phis: &[f64] =
-        if probe.subject.symmetry().isotropic { &[0.0] } else { &[0.0, 0.5, FRAC_PI_2, 2.2, PI, 5.1] };
-    let incidences: Vec<_> = thetas().into_iter().flat_map(|t| phis.iter().map(move |&p| (t, p))).collect();
-    let cost = (rules.nodes() * incidences.len()) as u64;
-    let settings = settings(probe.parameters(), (options.budget / 2 / cost).max(4) as usize);
+    let layout = Layout { largest: PI, stretch: 1.0, bilateral: symmetry.bilateral };
+    let dense = Layout { largest: SMALL, ..layout };
+    let phis = |k: usize| match symmetry.isotropic {
+        true => vec![0.0],
+        false => vec![0.0, FRAC_PI_2, 2.4 * k as f64],
+    };
+    let incidences = |thetas: &[f64]| -> Vec<[f64; 2]> {
+        let with_phis = |(k, &theta): (usize, &f64)| phis(k).into_iter().map(move |phi| [theta, phi]);
+        thetas.iter().enumerate().flat_map(with_phis).collect()
+    };
+    let mut coarse = thetas();
+    // Towards grazing by decades of cos θ.
+    coarse.extend((1..11).map(|k| FRAC_PI_2 - 10f64.powf(-0.5 * f64::from(k))));
+    let coarse = incidences(&coarse);
+    let folds = if symmetry.bilateral { 1 } else { 2 };
+    let most = options.budget / SHARE / 2 / (folds * USUAL * coarse.len() as u64);
+    let settings = settings(probe.parameters(), (most as usize).clamp(4, 128));
     let mut places = Vec::new();
     for setting in &settings {
-        for &(theta_i, phi_i) in &incidences {
-            let rho = rules.rho(probe, setting, theta_i, phi_i)?;
-            places.push(Incidence { rho, setting: setting.clone(), theta_i, phi_i });
-        }
-        observer.advance(0.8 / settings.len() as f64)?;
+        places.extend(scan(probe, setting, &coarse, &layout)?);
+        observer.advance(0.4 / settings.len() as f64)?;
     }
-    places.sort_by(|a, b| b.rho.certain().total_cmp(&a.rho.certain()));
-    let least = places.iter().map(|place| place.rho.value).fold(f64::INFINITY, f64::min);
-    if options.search {
-        for k in 0..SEEDS.min(places.len()) {
-            let found = climb(&rules, probe, &places[k], k as u64)?;
-            places.push(found);
-            observer.advance(0.2 / SEEDS as f64)?;
+
+    places.sort_by(|a, b| b.possible().total_cmp(&a.possible()));
+    let mut first: Vec<Vec<f64>> = Vec::new();
+    for place in &places {
+        if first.len() < FINE_SETTINGS && !first.contains(&place.setting) {
+            first.push(place.setting.clone());
         }
     }
+    let steps = |count: u32| (0..count).map(move |k| ((f64::from(k) + 0.5) / f64::from(count)).acos());
+    for setting in &first {
+        let fine = incidences(&steps(if symmetry.isotropic { FINE } else { FINE / 4 }).collect::<Vec<_>>());
+        places.extend(scan(probe, setting, &fine, &layout)?);
+        let few = incidences(&steps(DENSE).collect::<Vec<_>>());
+        places.extend(scan(probe, setting, &few, &dense)?);
+        observer.advance(0.2 / first.len() as f64)?;
+    }
+    for peak in peaks.iter().filter(|peak| peak.deviation.is_finite()) {
+        let Angles { theta_i, phi_i, theta_e, phi_e } = peak.angles;
+        for (theta, phi, theta_e, delta) in [
+            (theta_i, phi_i, theta_e, peak.angles.delta_phi()),
+            (theta_e, phi_e, theta_i, -peak.angles.delta_phi()),
+        ] {
+            let mut integral = Integral::new(theta, phi, &layout);
+            integral.seed(theta_e, delta, SEED_SIZE);
+            let mut place = [Place::new(integral, &peak.setting)];
+            refine_all(probe, &mut place, SCAN)?;
+            places.extend(place);
+        }
+    }
+
+    let scanned = probe.evaluated;
+    // The second round and later ones are for gains that are not excluded, while there is budget and no gain is certain.
+    for round in 0.. {
+        places.sort_by(|a, b| a.is_close.cmp(&b.is_close).then(b.possible().total_cmp(&a.possible())));
+        let close = places.iter().filter(|place| place.is_close);
+        let certain = close.map(Place::certain).fold(f64::NEG_INFINITY, f64::max);
+        let is_open = |place: &&Place| !place.is_close && (round == 0 || place.possible() > 1.0 + CLEAR);
+        let count = places.iter().take(CLOSELY).take_while(is_open).count();
+        let spent = probe.evaluated - scanned;
+        if count == 0 || round > 0 && (certain > 1.0 + tolerance || spent > options.budget / SHARE) {
+            break;
+        }
+        refine_all(probe, &mut places[..count], CLOSE)?;
+        places[..count].iter_mut().for_each(|place| place.is_close = true);
+        observer.advance(0.0)?;
+    }
+    observer.advance(0.2)?;
+    let least = places.iter().map(|place| place.integral.rho().value).fold(f64::INFINITY, f64::min);
     // The first of equals.
-    let largest = places.iter().rev().max_by(|a, b| a.rho.certain().total_cmp(&b.rho.certain()));
-    Ok(finding(probe, largest, least, tolerance))
+    places.sort_by(|a, b| b.certain().total_cmp(&a.certain()));
+    if options.search {
+        for k in 0..CLIMBS.min(places.len()) {
+            let found = climb(probe, &places[k], &layout, k as u64)?;
+            places.push(found);
+            observer.advance(0.1 / CLIMBS as f64)?;
+        }
+        // The first of equals.
+        places.sort_by(|a, b| b.certain().total_cmp(&a.certain()));
+    }
+    let mut confirmed: Vec<Incidence> = Vec::new();
+    for place in places.iter().take(CONFIRMED) {
+        let incidence = confirm(probe, place, &dense, symmetry.isotropic)?;
+        let is_enough = incidence.rho.certain() > 1.0 + tolerance || incidence.rho.possible() < 1.0;
+        confirmed.push(incidence);
+        observer.advance(0.1 / CONFIRMED as f64)?;
+        if is_enough {
+            break;
+        }
+    }
+    let largest = confirmed.iter().rev().max_by(|a, b| a.rho.certain().total_cmp(&b.rho.certain()));
+    let mut finding = finding(probe, largest, least, tolerance);
+    let rest = places.iter().skip(confirmed.len()).map(|place| place.incidence(place.integral.rho()));
+    confirmed.extend(rest);
+    let open = confirmed.iter().max_by(|a, b| a.rho.possible().total_cmp(&b.rho.possible()));
+    if let (Verdict::Kept, Some(open)) =
+        (finding.verdict, open.filter(|open| open.rho.possible() > 1.0 + CLEAR))
+    {
+        finding.note = Some(format!(
+            "no gain is confirmed, but one of {} is not excluded at θi = {:.6}°, where f32 directions and the budget leave {:.4} ± {}",
+            bar(open.rho.possible() - 1.0),
+            open.theta_i.to_degrees(),
+            open.rho.value,
+            bar(open.rho.estimate)
+        ));
+    }
+    Ok(finding)
 }
 
-/// Climbs on ρ over the incidence and the parameters.
-fn climb(rules: &Rules, probe: &mut Probe, from: &Incidence, number: u64) -> Result<Incidence> {
+/// The integrals of some incidences at a setting.
+fn scan(probe: &mut Probe, setting: &[f64], incidences: &[[f64; 2]], layout: &Layout) -> Result<Vec<Place>> {
+    let new = |&[theta, phi]: &[f64; 2]| Integral::new(theta, phi, layout);
+    let mut integrals: Vec<_> = incidences.iter().map(new).collect();
+    refine(probe, setting, &mut integrals, SCAN.tolerance, SCAN.most)?;
+    Ok(integrals.into_iter().map(|integral| Place::new(integral, setting)).collect())
+}
+
+/// Refines places, those of one setting together.
+fn refine_all(probe: &mut Probe, places: &mut [Place], effort: Effort) -> Result<()> {
+    places.sort_by(|a, b| a.setting.partial_cmp(&b.setting).unwrap_or(std::cmp::Ordering::Equal));
+    for group in places.chunk_by_mut(|a, b| a.setting == b.setting) {
+        let setting = group[0].setting.clone();
+        let mut integrals: Vec<_> = group.iter().map(|place| place.integral.clone()).collect();
+        refine(probe, &setting, &mut integrals, effort.tolerance, effort.most)?;
+        group.iter_mut().zip(integrals).for_each(|(place, integral)| place.integral = integral);
+    }
+    Ok(())
+}
+
+/// Climbs on what is certain of ρ, over the incidence and the parameters, in steps of all magnitudes.
+fn climb(probe: &mut Probe, from: &Place, layout: &Layout, number: u64) -> Result<Place> {
     let parameters = probe.parameters().to_vec();
+    let is_free = parameters.iter().any(|p| p.low < p.high);
     let mut chance = Chance(number);
-    let mut worst = Incidence { rho: from.rho, setting: from.setting.clone(), ..*from };
-    let mut radius = 0.1;
-    for _ in 0..ROUNDS {
-        let mut vain = true;
-        for _ in 0..TRIES {
-            let mut move_by = |size: f64| size * radius * (2.0 * chance.uniform() - 1.0);
-            let theta_i = (worst.theta_i + move_by(FRAC_PI_2)).clamp(0.0, FRAC_PI_2);
-            let phi_i = worst.phi_i + move_by(PI);
-            let setting: Vec<_> = parameters
-                .iter()
-                .zip(&worst.setting)
-                .map(|(p, &value)| p.at((p.place(value) + move_by(1.0)).clamp(0.0, 1.0)))
-                .collect();
-            let rho = rules.rho(probe, &setting, theta_i, phi_i)?;
-            if rho.certain() > worst.rho.certain() {
-                worst = Incidence { rho, setting, theta_i, phi_i };
-                vain = false;
+    let mut best = from.clone();
+    for round in 0..ROUNDS {
+        let mut move_by = |range: f64| {
+            let size = 0.1 * range * 10f64.powf(-4.0 * chance.uniform());
+            if chance.bits() & 1 == 0 { size } else { -size }
+        };
+        let setting = match is_free && round % 2 == 1 {
+            true => {
+                let moved = |(p, &value): (&ParameterRange, &f64)| {
+                    p.at((p.place(value) + move_by(1.0)).clamp(0.0, 1.0))
+                };
+                parameters.iter().zip(&best.setting).map(moved).collect()
+            }
+            false => best.setting.clone(),
+        };
+        let Integral { theta_i, phi_i, .. } = best.integral;
+        let mut integrals: Vec<_> = (0..TRIES)
+            .map(|k| match k {
+                0 => Integral::new(theta_i, phi_i, layout),
+                _ => {
+                    let theta = (theta_i + move_by(FRAC_PI_2)).clamp(0.0, FRAC_PI_2);
+                    Integral::new(theta, phi_i + move_by(PI), layout)
+                }
+            })
+            .collect();
+        refine(probe, &setting, &mut integrals, CLIMB.tolerance, CLIMB.most)?;
+        for integral in integrals {
+            let place = Place::new(integral, &setting);
+            if place.certain() > best.certain() {
+                best = place;
             }
         }
-        radius *= if vain { 0.5 } else { 1.5 };
     }
-    Ok(worst)
+    Ok(best)
+}
+
+/// ρ by charts that share no node with the first, at directions that round otherwise.
+fn confirm(probe: &mut Probe, place: &Place, dense: &Layout, isotropic: bool) -> Result<Incidence> {
+    let Integral { theta_i, phi_i, .. } = place.integral;
+    let mut integrals: Vec<_> = CHARTS
+        .iter()
+        .map(|&(stretch, near, far, steps)| {
+            let turn = if isotropic { far } else { near };
+            let most = STEP * theta_i.cos().max(0.0);
+            let step = (steps * ROUNDING / theta_i.sin().max(ROUNDING)).clamp(-most, most);
+            let theta_i = (theta_i + step).abs().min(FRAC_PI_2);
+            Integral::new(theta_i, phi_i + turn, &Layout { stretch, ..*dense })
+        })
+        .collect();
+    integrals.push(place.integral.clone());
+    refine(probe, &place.setting, &mut integrals, CONFIRM.tolerance, CONFIRM.most)?;
+    let rhos = || integrals.iter().map(Integral::rho);
+    let best =
+        rhos().min_by(|a, b| a.estimate.total_cmp(&b.estimate)).unwrap_or(Rho { value: 0.0, estimate: 0.0 });
+    let spread = rhos().map(|rho| (rho.value - best.value).abs()).fold(0.0, f64::max);
+    Ok(place.incidence(Rho { estimate: best.estimate + 2.0 * spread, ..best }))
 }
 
 pub(super) fn finding(probe: &Probe, most: Option<&Incidence>, least: f64, tolerance: f64) -> Finding {
@@ -138,7 +316,7 @@ pub(super) fn finding(probe: &Probe, most: Option<&Incidence>, least: f64, toler
             phi_e: place.phi_i + PI,
         },
     };
-    let doubt = if estimate > 0.0 { format!(" ± {estimate:.0e}") } else { String::new() };
+    let doubt = if estimate > 0.0 { format!(" ± {}", bar(estimate)) } else { String::new() };
     let said = format!(
         "ρ_dh from {least:.6} to {value:.6}{doubt}: {}",
         match value - 1.0 {
@@ -149,73 +327,7 @@ pub(super) fn finding(probe: &Probe, most: Option<&Incidence>, least: f64, toler
     Finding::of(NAME, 1.0 + tolerance, said, Some(worst), probe)
 }
 
-/// The nodes of both resolutions.
-struct Rules([[Vec<Node>; 2]; 2]);
-
-impl Rules {
-    fn new() -> Self {
-        Self([COARSE, FINE].map(|counts| counts.map(gauss_legendre)))
-    }
-
-    /// Pairs of directions that one ρ takes.
-    fn nodes(&self) -> usize {
-        self.0.iter().map(|[x, y]| 4 * x.len() * y.len()).sum()
-    }
-
-    fn rho(&self, probe: &mut Probe, setting: &[f64], theta_i: f64, phi_i: f64) -> Result<Rho> {
-        let [(coarse, mut angles), (fine, more)] =
-            [0, 1].map(|k| self.0[k].each_ref()).map(|rule| hemisphere(rule, theta_i, phi_i));
-        angles.extend(more);
-        let channels = probe.channels();
-        let values = probe.evaluate(setting, &angles)?;
-        let (first, second) = values.split_at(coarse.len() * channels);
-        let sum = |weights: &[f64], values: &[f32], channel: usize| -> f64 {
-            let values = values.iter().skip(channel).step_by(channels);
-            // What is not finite is reported as such, and must not hide the rest.
-            weights
-                .iter()
-                .zip(values)
-                .map(|(w, &v)| if is_non_finite(v) { 0.0 } else { w * f64::from(v) })
-                .sum()
-        };
-        let rhos = (0..channels).map(|channel| {
-            let (coarse, fine) = (sum(&coarse, first, channel), sum(&fine, second, channel));
-            Rho { value: fine, estimate: (fine - coarse).abs() }
-        });
-        let largest = rhos.max_by(|a, b| a.certain().total_cmp(&b.certain()));
-        Ok(largest.unwrap_or(Rho { value: 0.0, estimate: 0.0 }))
-    }
-}
-
-/// Weights, with cos θe in them, and the pairs of directions.
-fn hemisphere([xs, ys]: [&Vec<Node>; 2], theta_i: f64, phi_i: f64) -> (Vec<f64>, Vec<Angles>) {
-    let (sin, cos) = (theta_i.sin(), theta_i.cos().max(0.0));
-    let d = cos.max(JUMP);
-    let panel = (FRAC_PI_2 / d).asinh();
-    let (mut weights, mut angles) = (Vec::new(), Vec::new());
-    for (side, towards) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
-        for y in ys {
-            let psi = side * (FRAC_PI_2 + towards * d * (panel * y.x).sinh());
-            let dpsi = y.weight * panel * d * (panel * y.x).cosh();
-            let (sin_psi, cos_psi) = psi.sin_cos();
-            let end = (cos.atan2(sin * cos_psi) / WIDTH).asinh();
-            for x in xs {
-                let t = WIDTH * (end * x.x).sinh();
-                let dt = x.weight * end * WIDTH * (end * x.x).cosh();
-                let (sin_t, cos_t) = t.sin_cos();
-                let mu = (cos * cos_t - sin * cos_psi * sin_t).max(0.0);
-                // In the frame whose x axis is the azimuth of m: m = (sin, 0, cos), u = (cos, 0, −sin).
-                let along = sin * cos_t + cos * cos_psi * sin_t;
-                let across = sin_psi * sin_t;
-                weights.push(mu * sin_t * dt * dpsi);
-                angles.push(Angles {
-                    theta_i,
-                    phi_i,
-                    theta_e: along.hypot(across).atan2(mu).min(FRAC_PI_2),
-                    phi_e: phi_i + PI + across.atan2(along),
-                });
-            }
-        }
-    }
-    (weights, angles)
+/// An error bar, by one digit.
+fn bar(estimate: f64) -> String {
+    if estimate < 0.1 { format!("{estimate:.0e}") } else { format!("{estimate:.1}") }
 }

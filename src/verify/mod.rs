@@ -24,6 +24,7 @@ mod agreement;
 mod albedo;
 mod bits;
 mod energy;
+mod hemisphere;
 mod inputs;
 mod limits;
 mod probe;
@@ -39,7 +40,7 @@ pub use agreement::FAINT;
 pub use report::{Finding, Input, Report, Verdict};
 pub use sum::Sum;
 
-use crate::bake::Observer;
+use crate::bake::{Observer, Unobserved};
 use crate::base::angles::Angles;
 use crate::base::error::{Error, Result};
 use inputs::Inputs;
@@ -313,7 +314,7 @@ fn properties(probe: &Probe) -> Vec<Box<dyn Property>> {
         Box::new(reciprocity::Reciprocity { tolerance: tolerances.reciprocity }),
     ];
     if symmetry.isotropic {
-        properties.push(Box::new(symmetry::Isotropy { tolerance: tolerances.isotropy }));
+        properties.push(Box::new(symmetry::Isotropy { tolerance: tolerances.isotropy, mirrored: false }));
     }
     if symmetry.bilateral {
         properties.push(Box::new(symmetry::Bilateral { tolerance: tolerances.bilateral }));
@@ -327,6 +328,37 @@ fn properties(probe: &Probe) -> Vec<Box<dyn Property>> {
     properties
 }
 
+/// Looks at pairs of directions that are both on the horizon to the bit, where many a right f has a pole and is nothing:
+/// what is not finite there counts only where f a hair above the horizon is no larger than farther away.
+fn horizon(probe: &mut Probe, inputs: &Inputs) -> Result<()> {
+    /// Cosines a hair above, and farther away; a pole in either direction grows by more than [`GROWTH`] between.
+    const ABOVE: [f64; 2] = [1e-6, 1e-4];
+    const GROWTH: f64 = 4.0;
+    if probe.subject.rounding() == 0.0 || !probe.has_values() {
+        return Ok(());
+    }
+    let channels = probe.channels();
+    let pairs = inputs::horizon();
+    for setting in inputs.settings.iter().take(64) {
+        let [near, far] = ABOVE.map(|mu| {
+            let theta = std::f64::consts::FRAC_PI_2 - mu;
+            pairs
+                .iter()
+                .map(move |pair| Angles { theta_i: theta, theta_e: theta, ..*pair })
+                .collect::<Vec<_>>()
+        });
+        let [near, far] = [probe.evaluate(setting, &near)?, probe.evaluate(setting, &far)?];
+        let is_bounded = |k: usize| {
+            (k * channels..(k + 1) * channels).all(|k| {
+                near[k].is_finite() && f64::from(near[k].abs()) < GROWTH * f64::from(far[k].abs()).max(FLOOR)
+            })
+        };
+        let bounded: Vec<_> = (0..pairs.len()).filter(|&k| is_bounded(k)).map(|k| pairs[k]).collect();
+        probe.evaluate(setting, &bounded)?;
+    }
+    Ok(())
+}
+
 fn judge(subject: &mut dyn Subject, options: &VerifyOptions, observer: &dyn Observer) -> Result<Report> {
     let tolerances = subject.tolerances();
     let declared = subject.declared().to_vec();
@@ -336,11 +368,37 @@ fn judge(subject: &mut dyn Subject, options: &VerifyOptions, observer: &dyn Obse
     // Half of the values go to the integrals unless the subject does them, the rest to each promise alike.
     let values = if probe.has_integrals()? { options.budget } else { options.budget / 2 };
     let inputs = Inputs::new(probe.parameters(), values / properties.len().max(1) as u64);
-    let mut worst = Vec::new();
+    let (mut worst, mut peaks) = (Vec::new(), Vec::new());
     for property in &mut properties {
         observer.begin(property.name());
-        worst.push(search::hunt(property.as_mut(), &mut probe, &inputs, options.search, observer)?);
+        let found = search::hunt(property.as_mut(), &mut probe, &inputs, options.search, observer)?;
+        worst.push(found.first().cloned());
+        // The hunt for what overflows climbs on f.
+        peaks.extend(found.into_iter().filter(|_| property.name() == bits::FINITE));
     }
+    horizon(&mut probe, &inputs)?;
+    let place =
+        |properties: &[Box<dyn Property>], name: &str| properties.iter().position(|p| p.name() == name);
+    let is_broken = |k: usize, properties: &[Box<dyn Property>], worst: &[Option<search::Worst>]| {
+        worst[k].as_ref().is_some_and(|worst| worst.deviation > properties[k].limit())
+    };
+    // The mirror image in a fixed plane is exact; in others it rounds anew, and differs where isotropy is broken alone.
+    if let (Some(turn), Some(mirror)) = (place(&properties, "isotropy"), place(&properties, "bilateral"))
+        && is_broken(turn, &properties, &worst)
+        && !is_broken(mirror, &properties, &worst)
+    {
+        let mut planes = symmetry::Isotropy { tolerance: tolerances.isotropy, mirrored: true };
+        let found = search::hunt(&mut planes, &mut probe, &inputs, false, &Unobserved)?;
+        if let Some(found) = found.into_iter().next().filter(|found| found.deviation > tolerances.isotropy) {
+            properties[mirror] = Box::new(planes);
+            worst[mirror] = Some(found);
+        }
+    }
+    let is_kept = |name: &str| {
+        let mut found = properties.iter().zip(&worst).filter(|(property, _)| property.name() == name);
+        found.any(|(p, worst)| worst.as_ref().is_some_and(|w: &search::Worst| w.deviation <= p.limit()))
+    };
+    let symmetry = Symmetry { isotropic: is_kept("isotropy"), bilateral: is_kept("bilateral") };
     // What is declared to gain without bound is not judged by how much it gains.
     let (boundless, declared): (Vec<_>, Vec<_>) = declared
         .into_iter()
@@ -350,7 +408,7 @@ fn judge(subject: &mut dyn Subject, options: &VerifyOptions, observer: &dyn Obse
     } else if let Some(energy) = albedo::check(&mut probe, options.search, tolerances.energy, observer)? {
         Some(energy)
     } else {
-        Some(energy::check(&mut probe, options, tolerances.energy, observer)?)
+        Some(energy::check(&mut probe, options, symmetry, &peaks, tolerances.energy, observer)?)
     };
 
     // Every value was looked at, whatever it was evaluated for: orbits and integrals too.

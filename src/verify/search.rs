@@ -29,17 +29,21 @@ const LARGEST_STEP: f64 = 0.3;
 const DECADES: f64 = 7.0;
 /// Inputs of the scan in one go.
 const BATCH: u64 = 1 << 14;
+/// Inputs of the grid at every corner of many parameters, where there are up to so many; and at the ends of each two.
+const FEW: usize = 64;
+const CORNERS: usize = 256;
+const MORE: usize = 512;
 /// The candidates of a batch.
 const CANDIDATES: usize = 4;
 
-/// The worst input of a property; none where no input says anything.
+/// The worst inputs of a property, the worst first; none where no input says anything.
 pub(super) fn hunt(
     property: &mut dyn Property,
     probe: &mut Probe,
     inputs: &Inputs,
     search: bool,
     observer: &dyn Observer,
-) -> Result<Option<Worst>> {
+) -> Result<Vec<Worst>> {
     let mut seeds = Seeds::default();
     let share = if search { 0.8 } else { 1.0 };
     let size = orbit_size(property);
@@ -56,6 +60,14 @@ pub(super) fn hunt(
         }
         observer.advance(share / inputs.settings.len() as f64)?;
     }
+    // A dispatch for each of thousands of settings is for what is seen in one value.
+    let is_single = size == 1;
+    for setting in inputs.corners.iter().filter(|_| is_single || inputs.corners.len() <= CORNERS) {
+        judge(property, probe, setting, inputs.few(FEW), &mut seeds)?;
+    }
+    for setting in &inputs.pairs_of_ends {
+        judge(property, probe, setting, inputs.few(MORE), &mut seeds)?;
+    }
     if search {
         let starts = seeds.0.clone();
         for (k, seed) in starts.iter().enumerate() {
@@ -64,8 +76,9 @@ pub(super) fn hunt(
             observer.advance((1.0 - share) / starts.len() as f64)?;
         }
     }
-    // The first of equals.
-    Ok(seeds.0.into_iter().rev().max_by(|a, b| a.deviation.total_cmp(&b.deviation)))
+    // Stable: the first of equals.
+    seeds.0.sort_by(|a, b| b.deviation.total_cmp(&a.deviation));
+    Ok(seeds.0)
 }
 
 /// Evaluates the orbits of some inputs at a setting and keeps the worst.

@@ -10,6 +10,8 @@ use crate::verify::{Angles, FLOOR, Property, Subject};
 /// amplifies it, f scatters within a bundle by more than rounding can be worth.
 pub(super) struct Isotropy {
     pub tolerance: f64,
+    /// Whether the other bundle is a mirror image as well: bilateral symmetry about a plane of no symmetry.
+    pub mirrored: bool,
 }
 
 /// Displacements of (θi, θe, φe) in a bundle, in units of [`ROUNDING`].
@@ -25,7 +27,7 @@ const SCATTER: f64 = 3.0;
 
 impl Property for Isotropy {
     fn name(&self) -> &'static str {
-        "isotropy"
+        if self.mirrored { "bilateral" } else { "isotropy" }
     }
 
     fn limit(&self) -> f64 {
@@ -35,15 +37,16 @@ impl Property for Isotropy {
     fn orbit(&self, input: Angles, orbit: &mut Vec<Angles>) {
         // Away from the horizon, so that θ stays a zenith angle.
         let away = |theta: f64, step: f64| if theta < 1.0 { theta + step } else { theta - step };
-        for from in [0.0, TURN - input.phi_i] {
+        let side = if self.mirrored { -1.0 } else { 1.0 };
+        for (side, from) in [(1.0, 0.0), (side, TURN - side * input.phi_i)] {
             for (k, steps) in BUNDLE.iter().enumerate() {
                 let turn = from + k as f64 * STEP;
                 let [i, e, across] = steps.map(|step| step * ROUNDING);
                 orbit.push(Angles {
                     theta_i: away(input.theta_i, i),
-                    phi_i: input.phi_i + turn,
+                    phi_i: side * input.phi_i + turn,
                     theta_e: away(input.theta_e, e),
-                    phi_e: input.phi_e + turn + across,
+                    phi_e: side * (input.phi_e + across) + turn,
                 });
             }
         }
@@ -71,6 +74,11 @@ impl Property for Isotropy {
 
     fn say(&self, deviation: f64, _: &Probe) -> String {
         match deviation {
+            _ if self.mirrored => {
+                format!(
+                    "f of a pair and of its mirror image in a plane of incidence differ by {deviation:.1e} relative"
+                )
+            }
             0.0 => "a common turn of both directions changes f by no more than their rounding".into(),
             _ => format!("a common turn of both directions changes f by {deviation:.1e} relative"),
         }

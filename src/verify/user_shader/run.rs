@@ -12,27 +12,35 @@ use crate::verify::limits;
 use crate::verify::{ParameterRange, Subject, Symmetry};
 use rayon::prelude::*;
 use std::borrow::Cow;
+use std::f64::consts::FRAC_PI_2;
 use std::sync::mpsc;
 use std::time::Duration;
 
 /// The directions of a pair as the function gets them: (x, y, z), n = +z, rounded to f32.
 ///
 /// θ = π/2 is the horizon, z = 0. Where both are nearer to it than 2⁻²⁴ they are put there: f diverges, and a
-/// half vector of opposite directions would be 0. So is ωi alone where the cosine is to be divided out.
+/// half vector of opposite directions would be 0. So is ωi alone where the cosine is to be divided out. Beyond π/2 both
+/// are on the horizon to the bit. A sine or cosine of an azimuth that is 0 but for the digits of π is 0, and opposite
+/// azimuths are so to the bit.
 pub fn directions(angles: &Angles, cosine: bool) -> [[f32; 3]; 2] {
     vectors(angles, cosine).map(|vector| vector.map(|x| x as f32))
 }
 
 fn vectors(angles: &Angles, cosine: bool) -> [[f64; 3]; 2] {
     let (mut mu_i, mut mu_e) = (cos(angles.theta_i), cos(angles.theta_e));
-    if mu_i < MU_MIN && (mu_e < MU_MIN || cosine) {
+    let is_exact = angles.theta_i > FRAC_PI_2 && angles.theta_e > FRAC_PI_2 && !cosine;
+    if !is_exact && mu_i < MU_MIN && (mu_e < MU_MIN || cosine) {
         mu_i = MU_MIN;
         mu_e = if mu_e < MU_MIN { MU_MIN } else { mu_e };
     }
-    [(angles.theta_i, angles.phi_i, mu_i), (angles.theta_e, angles.phi_e, mu_e)].map(|(theta, phi, mu)| {
-        let (sin_phi, cos_phi) = phi.sin_cos();
-        [theta.sin() * cos_phi, theta.sin() * sin_phi, mu]
-    })
+    let is_opposite = angles.delta_phi().abs() <= f64::EPSILON * (1.0 + angles.phi_e.abs());
+    let (phi_e, sign_e) = if is_opposite { (angles.phi_i, -1.0) } else { (angles.phi_e, 1.0) };
+    let without_dust = |x: f64| if x.abs() < f64::EPSILON { 0.0 } else { x };
+    let vector = |theta: f64, phi: f64, mu: f64, sign: f64| {
+        let (sin, [sin_phi, cos_phi]) = (sign * theta.sin(), [phi.sin(), phi.cos()].map(without_dust));
+        [sin * cos_phi, sin * sin_phi, mu]
+    };
+    [vector(angles.theta_i, angles.phi_i, mu_i, 1.0), vector(angles.theta_e, phi_e, mu_e, sign_e)]
 }
 
 /// What a pair is on the device: ωi and ωi · h, ωo and ωi · ωo, h.
@@ -41,7 +49,8 @@ fn pair(angles: &Angles, cosine: bool) -> [f32; STRIDE] {
     let sum = [0, 1, 2].map(|k| i[k] + o[k]);
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let length = dot(sum, sum).sqrt();
-    let h = sum.map(|x| x / length);
+    // Of opposite directions it is none; the normal is as good as any.
+    let h = if length > 0.0 { sum.map(|x| x / length) } else { [0.0, 0.0, 1.0] };
     let [a, b, c] =
         [(i, dot(i, h)), (o, dot(i, o)), (h, 0.0)].map(|([x, y, z], w)| [x, y, z, w].map(|x| x as f32));
     let mut all = [0.0; STRIDE];
@@ -53,7 +62,7 @@ fn pair(angles: &Angles, cosine: bool) -> [f32; STRIDE] {
 
 /// cos θ, 0 at the f64 nearest to π/2 and beyond.
 fn cos(theta: f64) -> f64 {
-    if theta < std::f64::consts::FRAC_PI_2 { theta.cos() } else { 0.0 }
+    if theta < FRAC_PI_2 { theta.cos() } else { 0.0 }
 }
 
 /// A user's BRDF on a device.
