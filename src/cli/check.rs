@@ -1,5 +1,6 @@
 //! `gonio check`
 
+mod exceptions;
 mod pictures;
 mod targets;
 
@@ -14,7 +15,9 @@ use crate::io::Outputs;
 use crate::scene;
 use crate::verify;
 use crate::verify::user_shader::{UserFunction, UserShader, directions};
-use crate::verify::{Finding, Input, ParameterRange, Report, STEPS, Symmetry, Verdict, VerifyOptions};
+use crate::verify::{
+    Exceptions, Finding, Input, Limited, ParameterRange, Report, STEPS, Symmetry, Verdict, VerifyOptions,
+};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use targets::CheckTarget;
@@ -56,6 +59,8 @@ pub struct Args {
     /// `auto` or part of an adapter's name; for scenes and models also `cpu`
     #[arg(long, value_name = "NAME", default_value = "auto")]
     device: DeviceChoice,
+    #[command(flatten)]
+    exceptions: exceptions::ExceptionArgs,
     /// Print JSON on stdout and messages on stderr
     #[arg(long)]
     json: bool,
@@ -101,11 +106,20 @@ pub fn run(args: &Args) -> Result<()> {
             let (evaluator, line) = open(&args.device)?;
             scene.warnings.iter().for_each(|warning| warn(warning));
             let targets = targets::scene(path, &scene, args.material.as_deref(), evaluator)?;
-            check_targets(args, targets, evaluator, &line)
+            check_targets(args, targets, evaluator, &line, &exceptions::read(&args.exceptions, Some(path))?)
         }
         (_, Some(model), ..) => {
             let (evaluator, line) = open(&args.device)?;
-            check_targets(args, vec![targets::model(args, model, evaluator)?], evaluator, &line)
+            {
+                let exceptions = exceptions::read(&args.exceptions, None)?;
+                check_targets(
+                    args,
+                    vec![targets::model(args, model, evaluator)?],
+                    evaluator,
+                    &line,
+                    &exceptions,
+                )
+            }
         }
         (_, _, Some(path), Some(entry)) => check_shader(args, path, entry),
         _ => Err(Error::input("give a SCENE, --model NAME, or --wgsl FILE and --entry NAME")),
@@ -113,7 +127,13 @@ pub fn run(args: &Args) -> Result<()> {
 }
 
 /// Checks models, bases and materials, one subject after the other.
-fn check_targets(args: &Args, targets: Vec<CheckTarget>, evaluator: &Evaluator, line: &str) -> Result<()> {
+fn check_targets(
+    args: &Args,
+    targets: Vec<CheckTarget>,
+    evaluator: &Evaluator,
+    line: &str,
+    exceptions: &Exceptions,
+) -> Result<()> {
     print_beside(args.json, &format!("{HEADING}device{HEADING:#}  {line}"))?;
     let watch = Watch::new(STEPS * targets.len());
     let mut all = Vec::new();
@@ -123,7 +143,7 @@ fn check_targets(args: &Args, targets: Vec<CheckTarget>, evaluator: &Evaluator, 
     }
     for (k, CheckTarget { mut subject, command }) in targets.into_iter().enumerate() {
         let start = Stopwatch::start();
-        let report = verify::check(&mut subject, &args.options(), &watch)?;
+        let report = verify::check(&mut Limited::new(&mut subject, exceptions), &args.options(), &watch)?;
         let seconds = start.seconds();
         let has_values = |finding: &Finding| !finding.values.is_empty();
         let eval = |f: &Finding| Some(format!("{command} {}", f.input.as_ref().filter(|_| has_values(f))?));
@@ -178,6 +198,7 @@ fn check_shader(args: &Args, path: &Path, entry: &str) -> Result<()> {
     })?;
     let function = UserFunction::parse(&file, source, entry)?;
     let parameters = parameters(&function, &args.set)?;
+    let exceptions = exceptions::read(&args.exceptions, Some(path))?;
 
     let (device, line) = Device::choose(&args.device)?;
     let device = device.ok_or_else(|| {
@@ -192,7 +213,7 @@ fn check_shader(args: &Args, path: &Path, entry: &str) -> Result<()> {
 
     let start = Stopwatch::start();
     let watch = Watch::new(STEPS);
-    let report = verify::check(&mut subject, &args.options(), &watch);
+    let report = verify::check(&mut Limited::new(&mut subject, &exceptions), &args.options(), &watch);
     watch.finish();
     let report = report?;
     let seconds = start.seconds();

@@ -151,7 +151,8 @@ impl Integral {
         ];
         // A ray shorter than its width is straight.
         let thetas = thetas.iter().filter(|ray| ray.3 > 0.0);
-        let thetas: Vec<_> = thetas.map(|&(from, sign, w, length)| Ray::new(from, sign, w * stretch, length)).collect();
+        let thetas: Vec<_> =
+            thetas.map(|&(from, sign, w, length)| Ray::new(from, sign, w * stretch, length)).collect();
         let width = stretch * (AZIMUTH_WIDTH * cos.max(1e-4) / sin.max(1e-9)).min(1.0);
         let sides: &[f64] = if bilateral { &[1.0] } else { &[1.0, -1.0] };
         let azimuths = sides.iter().flat_map(|&side| {
@@ -313,7 +314,11 @@ impl Integral {
             let error = |k: usize| {
                 let of = |c: usize| {
                     let difference = (sums[c] - rough[k][c]).abs();
-                    if size[c] > 0.0 { difference * (100.0 * difference / size[c]).sqrt().min(1.0) } else { 0.0 }
+                    if size[c] > 0.0 {
+                        difference * (100.0 * difference / size[c]).sqrt().min(1.0)
+                    } else {
+                        0.0
+                    }
                 };
                 (0..channels).map(of).fold(0.0, f64::max)
             };

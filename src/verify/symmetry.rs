@@ -75,7 +75,9 @@ impl Property for Isotropy {
     fn say(&self, deviation: f64, _: &Probe) -> String {
         match deviation {
             _ if self.mirrored => {
-                format!("f of a pair and of its mirror image in a plane of incidence differ by {deviation:.1e} relative")
+                format!(
+                    "f of a pair and of its mirror image in a plane of incidence differ by {deviation:.1e} relative"
+                )
             }
             0.0 => "a common turn of both directions changes f by no more than their rounding".into(),
             _ => format!("a common turn of both directions changes f by {deviation:.1e} relative"),

@@ -248,10 +248,12 @@ pub fn directions(angles: &Angles, cosine: bool) -> [[f32; 3]; 2] {
     let phi_e = if is_opposite { angles.phi_i } else { angles.phi_e };
     let sign = if is_opposite { -1.0 } else { 1.0 };
     let without_dust = |x: f64| if x.abs() < f64::EPSILON { 0.0 } else { x };
-    [(angles.theta_i, angles.phi_i, mu_i, 1.0), (angles.theta_e, phi_e, mu_e, sign)].map(|(theta, phi, mu, sign)| {
-        let (sin, [sin_phi, cos_phi]) = (sign * theta.sin(), [phi.sin(), phi.cos()].map(without_dust));
-        [sin * cos_phi, sin * sin_phi, mu].map(|x| x as f32)
-    })
+    [(angles.theta_i, angles.phi_i, mu_i, 1.0), (angles.theta_e, phi_e, mu_e, sign)].map(
+        |(theta, phi, mu, sign)| {
+            let (sin, [sin_phi, cos_phi]) = (sign * theta.sin(), [phi.sin(), phi.cos()].map(without_dust));
+            [sin * cos_phi, sin * sin_phi, mu].map(|x| x as f32 + 0.0) // no −0
+        },
+    )
 }
 
 /// cos θ, 0 at the f64 nearest to π/2 and beyond.
