@@ -29,7 +29,7 @@ const SHARE: u64 = 4;
 const SCAN: Effort = Effort { tolerance: 2e-3, most: 6_000 };
 const CLOSE: Effort = Effort { tolerance: 5e-5, most: 40_000 };
 const CLIMB: Effort = Effort { tolerance: 1e-4, most: 12_000 };
-const CONFIRM: Effort = Effort { tolerance: 1e-5, most: 100_000 };
+const CONFIRM: Effort = Effort { tolerance: 1e-8, most: 60_000 };
 /// Pairs that a ρ of the scan takes, about.
 const USUAL: u64 = 3_000;
 /// Settings with a fine scan of cos θi, and its steps.
@@ -187,6 +187,9 @@ pub(super) fn check(
         observer.advance(0.0)?;
     }
     observer.advance(0.2)?;
+    places.sort_by(|a, b| a.integral.rho().value.total_cmp(&b.integral.rho().value));
+    let darkest = places.len().min(1);
+    refine_all(probe, &mut places[..darkest], CONFIRM)?;
     let least = places.iter().map(|place| place.integral.rho().value).fold(f64::INFINITY, f64::min);
     // The first of equals.
     places.sort_by(|a, b| b.certain().total_cmp(&a.certain()));

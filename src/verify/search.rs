@@ -61,13 +61,18 @@ pub(super) fn hunt(
         }
         observer.advance(share / inputs.settings.len() as f64)?;
     }
+    let share = |settings: &[Vec<f64>], most: usize| {
+        let each = inputs.budget / 8 / size / settings.len().max(1) as u64;
+        (each as usize).clamp(8, most)
+    };
+    let (few, more) = (share(&inputs.corners, FEW), share(&inputs.pairs_of_ends, MORE));
     // A dispatch for each of thousands of settings is for what is seen in one value.
     let is_single = size == 1;
     for setting in inputs.corners.iter().filter(|_| is_single || inputs.corners.len() <= CORNERS) {
-        judge(property, probe, setting, inputs.few(FEW), &mut seeds, extent)?;
+        judge(property, probe, setting, inputs.few(few), &mut seeds, extent)?;
     }
     for setting in &inputs.pairs_of_ends {
-        judge(property, probe, setting, inputs.few(MORE), &mut seeds, extent)?;
+        judge(property, probe, setting, inputs.few(more), &mut seeds, extent)?;
     }
     if search {
         let starts = seeds.0.clone();
