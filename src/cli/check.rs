@@ -1,5 +1,6 @@
 //! `gonio check`
 
+mod exceptions;
 mod pictures;
 mod resources;
 mod shader;
@@ -15,7 +16,7 @@ use crate::cli::{HEADING, device_json, junit, open, print_beside, print_json, wa
 use crate::io::Outputs;
 use crate::scene;
 use crate::verify;
-use crate::verify::{Finding, Report, STEPS, Verdict, VerifyOptions};
+use crate::verify::{Exceptions, Finding, Limited, Report, STEPS, Verdict, VerifyOptions};
 use serde_json::json;
 use std::path::PathBuf;
 use targets::CheckTarget;
@@ -76,6 +77,8 @@ pub struct Args {
     /// `auto` or part of an adapter's name; for scenes and models also `cpu`
     #[arg(long, value_name = "NAME", default_value = "auto")]
     device: DeviceChoice,
+    #[command(flatten)]
+    exceptions: exceptions::ExceptionArgs,
     /// Print JSON on stdout and messages on stderr
     #[arg(long)]
     json: bool,
@@ -126,18 +129,25 @@ pub fn run(args: &Args) -> Result<()> {
             let (evaluator, line) = open(&args.device)?;
             scene.warnings.iter().for_each(|warning| warn(warning));
             let targets = targets::scene(path, &scene, args.material.as_deref(), evaluator)?;
-            check_targets(args, targets, evaluator, &line)
+            check_targets(args, targets, evaluator, &line, &exceptions::read(&args.exceptions, Some(path))?)
         }
         (_, Some(model)) => {
             let (evaluator, line) = open(&args.device)?;
-            check_targets(args, vec![targets::model(args, model, evaluator)?], evaluator, &line)
+            let exceptions = exceptions::read(&args.exceptions, None)?;
+            check_targets(args, vec![targets::model(args, model, evaluator)?], evaluator, &line, &exceptions)
         }
         _ => Err(Error::input("give a SCENE, a SHADER such as brdf.wgsl#brdf, or --model NAME")),
     }
 }
 
 /// Checks models, bases and materials, one subject after the other.
-fn check_targets(args: &Args, targets: Vec<CheckTarget>, evaluator: &Evaluator, line: &str) -> Result<()> {
+fn check_targets(
+    args: &Args,
+    targets: Vec<CheckTarget>,
+    evaluator: &Evaluator,
+    line: &str,
+    exceptions: &Exceptions,
+) -> Result<()> {
     print_beside(args.json, &format!("{HEADING}device{HEADING:#}  {line}"))?;
     let watch = Watch::new(STEPS * targets.len());
     let mut all = Vec::new();
@@ -147,7 +157,7 @@ fn check_targets(args: &Args, targets: Vec<CheckTarget>, evaluator: &Evaluator, 
     }
     for (k, CheckTarget { mut subject, command }) in targets.into_iter().enumerate() {
         let start = Stopwatch::start();
-        let report = verify::check(&mut subject, &args.options(), &watch)?;
+        let report = verify::check(&mut Limited::new(&mut subject, exceptions), &args.options(), &watch)?;
         let seconds = start.seconds();
         let has_values = |finding: &Finding| !finding.values.is_empty();
         let eval = |f: &Finding| Some(format!("{command} {}", f.input.as_ref().filter(|_| has_values(f))?));

@@ -39,6 +39,9 @@ pub(super) fn check(
     let mut scan = thetas();
     // Towards grazing by decades of cos θ.
     scan.extend((2..12).map(|k| FRAC_PI_2 - 10f64.powf(-0.5 * f64::from(k))));
+    let [low, high] = probe.thetas();
+    scan.retain(|theta| (low..=high).contains(theta));
+    scan.extend([low, high]);
     let mut all = settings(&parameters, SETTINGS);
     all.extend(sweeps(&parameters));
     let mut places = places(probe.subject, &all, &scan, channels)?;
@@ -51,7 +54,7 @@ pub(super) fn check(
         let from = most.theta_i / FRAC_PI_2;
         let angles = (0..=ANGLES).map(|k| {
             let step = 2.0 * k as f64 / ANGLES as f64 - 1.0;
-            FRAC_PI_2 * (from + distance * step).clamp(0.0, 1.0)
+            (FRAC_PI_2 * (from + distance * step).clamp(0.0, 1.0)).clamp(low, high)
         });
         let found = self::places(probe.subject, &around, &angles.collect::<Vec<_>>(), channels)?;
         places.extend(found);

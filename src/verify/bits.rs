@@ -27,12 +27,12 @@ impl Property for Finite {
     }
 
     fn say(&self, deviation: f64, probe: &Probe) -> String {
-        match probe.non_finite_count {
+        match probe.non_finite_extent.broken {
             0 => format!(
                 "none of {} pairs is NaN or infinite; largest f {deviation:.3e} sr⁻¹",
                 probe.evaluated
             ),
-            count => format!("{count} values of {} pairs are NaN or infinite", probe.evaluated),
+            _ => "NaN or infinite".into(),
         }
     }
 }
@@ -61,11 +61,12 @@ impl Property for NonNegative {
     fn say(&self, deviation: f64, probe: &Probe) -> String {
         // Plus zero: no "-0".
         let lowest = 0.0 - deviation;
-        match probe.negative_count {
-            0 => format!("none of {} pairs is negative; smallest f {lowest:.3e} sr⁻¹", probe.evaluated),
-            count => {
-                format!("{count} values of {} pairs are negative, down to {lowest:.3e} sr⁻¹", probe.evaluated)
+        match probe.negative.broken {
+            0 if probe.noise > 0.0 => {
+                format!("0 to rounding: down to {:.0e} sr⁻¹, far below an ULP of f elsewhere", -probe.noise)
             }
+            0 => format!("none of {} pairs is negative; smallest f {lowest:.3e} sr⁻¹", probe.evaluated),
+            _ => format!("negative, down to {lowest:.3e} sr⁻¹"),
         }
     }
 }

@@ -18,7 +18,7 @@ use crate::verify::probe::Probe;
 use crate::verify::report::{Finding, Verdict};
 use crate::verify::search::Worst;
 use crate::verify::sequence::Chance;
-use crate::verify::{Angles, ParameterRange, Symmetry, VerifyOptions};
+use crate::verify::{Angles, Extent, ParameterRange, Symmetry, VerifyOptions};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 pub(super) const NAME: &str = "energy";
@@ -29,7 +29,7 @@ const SHARE: u64 = 4;
 const SCAN: Effort = Effort { tolerance: 2e-3, most: 6_000 };
 const CLOSE: Effort = Effort { tolerance: 5e-5, most: 40_000 };
 const CLIMB: Effort = Effort { tolerance: 1e-4, most: 12_000 };
-const CONFIRM: Effort = Effort { tolerance: 1e-5, most: 100_000 };
+const CONFIRM: Effort = Effort { tolerance: 1e-8, most: 60_000 };
 /// Pairs that a ρ of the scan takes, about.
 const USUAL: u64 = 3_000;
 /// Settings with a fine scan of cos θi, and its steps.
@@ -122,6 +122,9 @@ pub(super) fn check(
     let mut coarse = thetas();
     // Towards grazing by decades of cos θ.
     coarse.extend((1..11).map(|k| FRAC_PI_2 - 10f64.powf(-0.5 * f64::from(k))));
+    let [low, high] = probe.thetas();
+    coarse.retain(|theta| (low..=high).contains(theta));
+    coarse.extend([low, high].into_iter().filter(|&theta| theta > 0.0 && theta < FRAC_PI_2));
     let coarse = incidences(&coarse);
     let folds = if symmetry.bilateral { 1 } else { 2 };
     let most = options.budget / SHARE / 2 / (folds * USUAL * coarse.len() as u64);
@@ -139,15 +142,21 @@ pub(super) fn check(
             first.push(place.setting.clone());
         }
     }
-    let steps = |count: u32| (0..count).map(move |k| ((f64::from(k) + 0.5) / f64::from(count)).acos());
+    let steps = |count: u32| -> Vec<f64> {
+        let thetas = (0..count).map(|k| ((f64::from(k) + 0.5) / f64::from(count)).acos());
+        thetas.filter(|theta| (low..=high).contains(theta)).collect()
+    };
     for setting in &first {
-        let fine = incidences(&steps(if symmetry.isotropic { FINE } else { FINE / 4 }).collect::<Vec<_>>());
+        let fine = incidences(&steps(if symmetry.isotropic { FINE } else { FINE / 4 }));
         places.extend(scan(probe, setting, &fine, &layout)?);
-        let few = incidences(&steps(DENSE).collect::<Vec<_>>());
+        let few = incidences(&steps(DENSE));
         places.extend(scan(probe, setting, &few, &dense)?);
         observer.advance(0.2 / first.len() as f64)?;
     }
     for peak in peaks.iter().filter(|peak| peak.deviation.is_finite()) {
+        if !probe.is_judged(&peak.angles) {
+            continue;
+        }
         let Angles { theta_i, phi_i, theta_e, phi_e } = peak.angles;
         for (theta, phi, theta_e, delta) in [
             (theta_i, phi_i, theta_e, peak.angles.delta_phi()),
@@ -178,6 +187,9 @@ pub(super) fn check(
         observer.advance(0.0)?;
     }
     observer.advance(0.2)?;
+    places.sort_by(|a, b| a.integral.rho().value.total_cmp(&b.integral.rho().value));
+    let darkest = places.len().min(1);
+    refine_all(probe, &mut places[..darkest], CONFIRM)?;
     let least = places.iter().map(|place| place.integral.rho().value).fold(f64::INFINITY, f64::min);
     // The first of equals.
     places.sort_by(|a, b| b.certain().total_cmp(&a.certain()));
@@ -201,7 +213,13 @@ pub(super) fn check(
         }
     }
     let largest = confirmed.iter().rev().max_by(|a, b| a.rho.certain().total_cmp(&b.rho.certain()));
-    let mut finding = finding(probe, largest, least, tolerance);
+    let mut extent = Extent { of: places.len() as u64, ..Extent::default() };
+    for place in places.iter().filter(|place| place.certain() > 1.0 + tolerance) {
+        let theta = place.integral.theta_i;
+        let incidence = Angles { theta_i: theta, phi_i: 0.0, theta_e: theta, phi_e: 0.0 };
+        extent.add(probe.parameters(), &place.setting, &incidence);
+    }
+    let mut finding = finding(probe, largest, least, tolerance).with_extent(extent);
     let rest = places.iter().skip(confirmed.len()).map(|place| place.incidence(place.integral.rho()));
     confirmed.extend(rest);
     let open = confirmed.iter().max_by(|a, b| a.rho.possible().total_cmp(&b.rho.possible()));
@@ -241,6 +259,7 @@ fn refine_all(probe: &mut Probe, places: &mut [Place], effort: Effort) -> Result
 
 /// Climbs on what is certain of ρ, over the incidence and the parameters, in steps of all magnitudes.
 fn climb(probe: &mut Probe, from: &Place, layout: &Layout, number: u64) -> Result<Place> {
+    let [low, high] = probe.thetas();
     let parameters = probe.parameters().to_vec();
     let is_free = parameters.iter().any(|p| p.low < p.high);
     let mut chance = Chance(number);
@@ -264,7 +283,7 @@ fn climb(probe: &mut Probe, from: &Place, layout: &Layout, number: u64) -> Resul
             .map(|k| match k {
                 0 => Integral::new(theta_i, phi_i, layout),
                 _ => {
-                    let theta = (theta_i + move_by(FRAC_PI_2)).clamp(0.0, FRAC_PI_2);
+                    let theta = (theta_i + move_by(FRAC_PI_2)).clamp(low, high);
                     Integral::new(theta, phi_i + move_by(PI), layout)
                 }
             })

@@ -153,10 +153,12 @@ fn grid() -> Vec<Angles> {
     grid
 }
 
-/// Both directions on the horizon to the bit: opposite, equal, perpendicular and between.
-pub(super) fn horizon() -> Vec<Angles> {
-    let phis = [(0.0, PI), (2.2, 2.2 + PI), (0.0, 0.0), (2.2, 2.2), (0.0, FRAC_PI_2), (0.3, 1.7)];
-    phis.map(|(phi_i, phi_e)| Angles { theta_i: HORIZON, phi_i, theta_e: HORIZON, phi_e }).to_vec()
+/// Both directions on the horizon to the bit: opposite ones; and equal, perpendicular and others.
+pub(super) fn horizon() -> (Vec<Angles>, Vec<Angles>) {
+    let at = |(phi_i, phi_e)| Angles { theta_i: HORIZON, phi_i, theta_e: HORIZON, phi_e };
+    let opposite = [(0.0, PI), (PI, 0.0), (2.2, 2.2 + PI), (0.7, 0.7 + PI)];
+    let others = [(0.0, 0.0), (2.2, 2.2), (0.0, FRAC_PI_2), (0.3, 1.7), (0.3, 3.1)];
+    (opposite.map(at).to_vec(), others.map(at).to_vec())
 }
 
 /// Input n from a point of the unit cube: in turns anywhere, near the horizon, near the mirror direction, and

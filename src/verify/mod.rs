@@ -24,8 +24,10 @@ mod agreement;
 mod albedo;
 mod bits;
 mod energy;
+mod extent;
 mod hemisphere;
 mod inputs;
+mod limited;
 mod limits;
 mod probe;
 mod reciprocity;
@@ -37,6 +39,8 @@ mod symmetry;
 pub mod user_shader;
 
 pub use agreement::FAINT;
+pub use extent::Extent;
+pub use limited::{Exceptions, Limited};
 pub use report::{Finding, Input, Report, Verdict};
 pub use sum::Sum;
 
@@ -182,6 +186,11 @@ pub trait Subject {
         true
     }
 
+    /// The zenith angles of the pairs by which it is judged, rad.
+    fn thetas(&self) -> [f64; 2] {
+        [0.0, std::f64::consts::FRAC_PI_2]
+    }
+
     /// Why its last values are not its own: a driver stopped it before it was through. Nothing is judged by them.
     fn cut_short(&self) -> Option<String> {
         None
@@ -262,6 +271,9 @@ impl Default for VerifyOptions {
 /// 5 to 10 s on two cores with software Vulkan.
 pub const DEFAULT_BUDGET: u64 = 20_000_000;
 
+/// Settings with pairs that are both on the horizon to the bit.
+const HORIZON_SETTINGS: usize = 64;
+
 /// The steps that an observer is told of, at most.
 pub const STEPS: usize = 7;
 
@@ -328,33 +340,23 @@ fn properties(probe: &Probe) -> Vec<Box<dyn Property>> {
     properties
 }
 
-/// Looks at pairs of directions that are both on the horizon to the bit, where many a right f has a pole and is nothing:
-/// what is not finite there counts only where f a hair above the horizon is no larger than farther away.
+/// Looks at pairs of directions that are both on the horizon to the bit. Many a right f has a pole there, or 0/0, in all
+/// azimuths; it is what is not finite in some of them alone, as where the half vector is 0, that is a fault.
 fn horizon(probe: &mut Probe, inputs: &Inputs) -> Result<()> {
-    /// Cosines a hair above, and farther away; a pole in either direction grows by more than [`GROWTH`] between.
-    const ABOVE: [f64; 2] = [1e-6, 1e-4];
-    const GROWTH: f64 = 4.0;
     if probe.subject.rounding() == 0.0 || !probe.has_values() {
         return Ok(());
     }
-    let channels = probe.channels();
-    let pairs = inputs::horizon();
-    for setting in inputs.settings.iter().take(64) {
-        let [near, far] = ABOVE.map(|mu| {
-            let theta = std::f64::consts::FRAC_PI_2 - mu;
-            pairs
-                .iter()
-                .map(move |pair| Angles { theta_i: theta, theta_e: theta, ..*pair })
-                .collect::<Vec<_>>()
-        });
-        let [near, far] = [probe.evaluate(setting, &near)?, probe.evaluate(setting, &far)?];
-        let is_bounded = |k: usize| {
-            (k * channels..(k + 1) * channels).all(|k| {
-                near[k].is_finite() && f64::from(near[k].abs()) < GROWTH * f64::from(far[k].abs()).max(FLOOR)
-            })
-        };
-        let bounded: Vec<_> = (0..pairs.len()).filter(|&k| is_bounded(k)).map(|k| pairs[k]).collect();
-        probe.evaluate(setting, &bounded)?;
+    let (opposite, others) = inputs::horizon();
+    let settings = inputs.settings.iter().take(HORIZON_SETTINGS);
+    for setting in settings.clone() {
+        let mut values = Vec::new();
+        probe.subject.evaluate(setting, &others, &mut values)?;
+        if values.iter().any(|&value| probe::is_non_finite(value)) {
+            return Ok(());
+        }
+    }
+    for setting in settings {
+        probe.evaluate(setting, &opposite)?;
     }
     Ok(())
 }
@@ -368,10 +370,13 @@ fn judge(subject: &mut dyn Subject, options: &VerifyOptions, observer: &dyn Obse
     // Half of the values go to the integrals unless the subject does them, the rest to each promise alike.
     let values = if probe.has_integrals()? { options.budget } else { options.budget / 2 };
     let inputs = Inputs::new(probe.parameters(), values / properties.len().max(1) as u64);
-    let (mut worst, mut peaks) = (Vec::new(), Vec::new());
+    let (mut worst, mut peaks, mut extents) = (Vec::new(), Vec::new(), Vec::new());
     for property in &mut properties {
         observer.begin(property.name());
-        let found = search::hunt(property.as_mut(), &mut probe, &inputs, options.search, observer)?;
+        let mut extent = Extent::default();
+        let found =
+            search::hunt(property.as_mut(), &mut probe, &inputs, options.search, &mut extent, observer)?;
+        extents.push(extent);
         worst.push(found.first().cloned());
         // The hunt for what overflows climbs on f.
         peaks.extend(found.into_iter().filter(|_| property.name() == bits::FINITE));
@@ -388,10 +393,12 @@ fn judge(subject: &mut dyn Subject, options: &VerifyOptions, observer: &dyn Obse
         && !is_broken(mirror, &properties, &worst)
     {
         let mut planes = symmetry::Isotropy { tolerance: tolerances.isotropy, mirrored: true };
-        let found = search::hunt(&mut planes, &mut probe, &inputs, false, &Unobserved)?;
+        let mut extent = Extent::default();
+        let found = search::hunt(&mut planes, &mut probe, &inputs, false, &mut extent, &Unobserved)?;
         if let Some(found) = found.into_iter().next().filter(|found| found.deviation > tolerances.isotropy) {
             properties[mirror] = Box::new(planes);
             worst[mirror] = Some(found);
+            extents[mirror] = extent;
         }
     }
     let is_kept = |name: &str| {
@@ -411,14 +418,23 @@ fn judge(subject: &mut dyn Subject, options: &VerifyOptions, observer: &dyn Obse
         Some(energy::check(&mut probe, options, symmetry, &peaks, tolerances.energy, observer)?)
     };
 
+    probe.settle_negative();
     // Every value was looked at, whatever it was evaluated for: orbits and integrals too.
     for (worst, seen) in worst.iter_mut().zip([probe.non_finite.take(), probe.most_negative.take()]) {
         *worst = seen.or(worst.take());
     }
+    // What is below zero by rounding alone is none of it.
+    if let (0, Some(Some(worst))) = (probe.negative.broken, worst.get_mut(1)) {
+        worst.deviation = worst.deviation.min(0.0);
+    }
+    for (extent, seen) in extents.iter_mut().zip([&probe.non_finite_extent, &probe.negative]) {
+        *extent = Extent { of: probe.evaluated, ..seen.clone() };
+    }
     let mut findings: Vec<_> = properties
         .iter()
         .zip(worst)
-        .map(|(property, worst)| Finding::new(property.as_ref(), worst, &probe))
+        .zip(extents)
+        .map(|((property, worst), extent)| Finding::new(property.as_ref(), worst, &probe).with_extent(extent))
         .chain(energy)
         .collect();
     for declared in &declared {

@@ -3,7 +3,7 @@
 use crate::base::error::{Error, Result};
 use crate::verify::probe::Probe;
 use crate::verify::search::Worst;
-use crate::verify::{Angles, Declared, Property, Subject};
+use crate::verify::{Angles, Declared, Extent, Property, Subject};
 use serde::Serialize;
 use std::fmt;
 
@@ -33,6 +33,8 @@ pub struct Finding {
     pub limit: f64,
     /// The same in words.
     pub said: String,
+    /// How much of the domain is broken, if it is.
+    pub extent: Option<Extent>,
     /// Where.
     pub input: Option<Input>,
     /// f there, sr⁻¹, each channel; none where there are no values.
@@ -94,10 +96,20 @@ impl Finding {
             deviation: Some(deviation).filter(|d| d.is_finite()),
             limit,
             said,
+            extent: None,
             input,
             values: Vec::new(),
             note: None,
         }
+    }
+
+    /// Notes how much is broken, of a broken promise.
+    pub(super) fn with_extent(mut self, extent: Extent) -> Self {
+        if self.verdict == Verdict::Broken && extent.broken > 0 {
+            self.said += &format!("; {extent}");
+            self.extent = Some(extent);
+        }
+        self
     }
 
     /// A promise that is not judged.
@@ -109,6 +121,7 @@ impl Finding {
             deviation: None,
             limit: 0.0,
             said,
+            extent: None,
             input: None,
             values: Vec::new(),
             note: None,

@@ -5,7 +5,7 @@ use crate::base::error::Result;
 use crate::verify::inputs::Inputs;
 use crate::verify::probe::Probe;
 use crate::verify::sequence::Chance;
-use crate::verify::{Angles, ParameterRange, Property};
+use crate::verify::{Angles, Extent, ParameterRange, Property};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// An input and how far it is from a promise.
@@ -42,6 +42,7 @@ pub(super) fn hunt(
     probe: &mut Probe,
     inputs: &Inputs,
     search: bool,
+    extent: &mut Extent,
     observer: &dyn Observer,
 ) -> Result<Vec<Worst>> {
     let mut seeds = Seeds::default();
@@ -50,23 +51,28 @@ pub(super) fn hunt(
     let each = inputs.budget / size / inputs.settings.len() as u64;
     let scattered = each.saturating_sub(inputs.grid.len() as u64);
     for (k, setting) in inputs.settings.iter().enumerate() {
-        judge(property, probe, setting, inputs.grid.clone(), &mut seeds)?;
+        judge(property, probe, setting, inputs.grid.clone(), &mut seeds, extent)?;
         let (mut first, end) = (k as u64 * scattered, (k as u64 + 1) * scattered);
         while first < end {
             let count = BATCH.min(end - first);
-            judge(property, probe, setting, inputs.scattered(first, count).collect(), &mut seeds)?;
+            judge(property, probe, setting, inputs.scattered(first, count).collect(), &mut seeds, extent)?;
             first += count;
             observer.advance(0.0)?;
         }
         observer.advance(share / inputs.settings.len() as f64)?;
     }
+    let count = |settings: &[Vec<f64>], most: usize| {
+        let each = inputs.budget / 8 / size / settings.len().max(1) as u64;
+        (each as usize).clamp(8, most)
+    };
+    let (few, more) = (count(&inputs.corners, FEW), count(&inputs.pairs_of_ends, MORE));
     // A dispatch for each of thousands of settings is for what is seen in one value.
     let is_single = size == 1;
     for setting in inputs.corners.iter().filter(|_| is_single || inputs.corners.len() <= CORNERS) {
-        judge(property, probe, setting, inputs.few(FEW), &mut seeds)?;
+        judge(property, probe, setting, inputs.few(few), &mut seeds, extent)?;
     }
     for setting in &inputs.pairs_of_ends {
-        judge(property, probe, setting, inputs.few(MORE), &mut seeds)?;
+        judge(property, probe, setting, inputs.few(more), &mut seeds, extent)?;
     }
     if search {
         let starts = seeds.0.clone();
@@ -88,8 +94,13 @@ fn judge(
     setting: &[f64],
     inputs: Vec<Angles>,
     seeds: &mut Seeds,
+    extent: &mut Extent,
 ) -> Result<()> {
     let deviations = deviations(property, probe, setting, &inputs)?;
+    extent.of += inputs.len() as u64;
+    for (input, _) in inputs.iter().zip(&deviations).filter(|(_, deviation)| **deviation > property.limit()) {
+        extent.add(probe.parameters(), setting, input);
+    }
     let mut order: Vec<_> = (0..inputs.len()).filter(|&k| deviations[k] > f64::NEG_INFINITY).collect();
     // The first of equals: inputs on the grid are the easiest to read.
     order.sort_by(|&a, &b| deviations[b].total_cmp(&deviations[a]));
@@ -123,7 +134,10 @@ fn deviations(
     let (orbits, values) = (orbits.chunks_exact(size), values.chunks_exact(size * probe.channels()));
     Ok(orbits
         .zip(values)
-        .map(|(orbit, values)| property.judge(&*probe.subject, setting, orbit, values))
+        .map(|(orbit, values)| match probe.is_judged(&orbit[0]) {
+            true => property.judge(&*probe.subject, setting, orbit, values),
+            false => f64::NEG_INFINITY,
+        })
         .collect())
 }
 

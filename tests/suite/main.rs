@@ -23,6 +23,7 @@ mod extensions;
 #[cfg(feature = "files")]
 mod files;
 mod fresnel;
+mod furnace;
 mod hostile;
 mod integrals;
 mod layers;

@@ -1,6 +1,6 @@
 //! Checks a function of the user's own shader.
 
-use super::{Args, Checked, resources, show_report, verdict};
+use super::{Args, Checked, exceptions, resources, show_report, verdict};
 use crate::backend::gpu::{Device, INSTALL};
 use crate::base::error::{Error, Result};
 use crate::base::timings::Stopwatch;
@@ -8,7 +8,7 @@ use crate::cli::watch::Watch;
 use crate::cli::{HEADING, junit, print_beside, print_json};
 use crate::io::Outputs;
 use crate::verify::user_shader::{ShaderOptions, UserFunction, UserShader, directions, is_shader};
-use crate::verify::{self, Input, ParameterRange, STEPS, Symmetry};
+use crate::verify::{self, Input, Limited, ParameterRange, STEPS, Symmetry};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -51,11 +51,12 @@ pub fn check_shader(args: &Args, path: &Path, entry: Option<String>) -> Result<(
     // It lives as long as the process, see `open`.
     let device: &'static Device = Box::leak(Box::new(device));
     let symmetry = Symmetry { isotropic: !args.anisotropic, bilateral: !args.anisotropic };
+    let exceptions = exceptions::read(&args.exceptions, Some(path))?;
     let mut subject = UserShader::new(device, function, parameters, args.cosine, symmetry)?;
 
     let start = Stopwatch::start();
     let watch = Watch::new(STEPS);
-    let report = verify::check(&mut subject, &args.options(), &watch);
+    let report = verify::check(&mut Limited::new(&mut subject, &exceptions), &args.options(), &watch);
     watch.finish();
     let report = report?;
     let seconds = start.seconds();

@@ -23,7 +23,7 @@ use std::time::Duration;
 /// are on the horizon to the bit. A sine or cosine of an azimuth that is 0 but for the digits of π is 0, and opposite
 /// azimuths are so to the bit.
 pub fn directions(angles: &Angles, cosine: bool) -> [[f32; 3]; 2] {
-    vectors(angles, cosine).map(|vector| vector.map(|x| x as f32))
+    vectors(angles, cosine).map(|vector| vector.map(|x| x as f32 + 0.0)) // no −0
 }
 
 fn vectors(angles: &Angles, cosine: bool) -> [[f64; 3]; 2] {
@@ -52,7 +52,7 @@ fn pair(angles: &Angles, cosine: bool) -> [f32; STRIDE] {
     // Of opposite directions it is none; the normal is as good as any.
     let h = if length > 0.0 { sum.map(|x| x / length) } else { [0.0, 0.0, 1.0] };
     let [a, b, c] =
-        [(i, dot(i, h)), (o, dot(i, o)), (h, 0.0)].map(|([x, y, z], w)| [x, y, z, w].map(|x| x as f32));
+        [(i, dot(i, h)), (o, dot(i, o)), (h, 0.0)].map(|([x, y, z], w)| [x, y, z, w].map(|x| x as f32 + 0.0));
     let mut all = [0.0; STRIDE];
     for (four, values) in all.chunks_exact_mut(4).zip([a, b, c]) {
         four.copy_from_slice(&values);
