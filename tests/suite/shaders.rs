@@ -405,6 +405,16 @@ mod command {
         assert_eq!(run.status.code(), Some(0), "{}{}", text(&run.stdout), text(&run.stderr));
     }
 
+    /// Exponents are called nu and nv, cosines too.
+    #[test]
+    fn what_is_set_is_a_parameter() {
+        let shader =
+            "fn f(wi: vec3f, wo: vec3f, nu: f32, nv: f32) -> f32 { return 0.3 / max(1.0, nu + nv); }";
+        let dir = folder(&[("a.wgsl", shader)]);
+        let run = gonio(dir.path(), &["a.wgsl", "--set", "nu=1..9", "--set", "nv=1..9"]);
+        assert_eq!(run.status.code(), Some(0), "{}{}", text(&run.stdout), text(&run.stderr));
+    }
+
     #[test]
     fn faults_say_what_to_write() {
         let texture = "@group(0) @binding(0) var lut: texture_2d<f32>; fn f(l: vec3f, v: vec3f) -> f32 { return textureLoad(lut, vec2u(0u), 0).x; }";
