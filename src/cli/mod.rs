@@ -43,7 +43,7 @@ enum Command {
     /// Evaluate a BRDF for one pair of directions or for a list of pairs
     Eval(eval::Args),
     /// Search for inputs at which a BRDF is not finite, not reciprocal, or gains energy
-    Check(check::Args),
+    Check(Box<check::Args>),
     /// Measure the error of f32 against f64 for each model and decade of α
     Atlas(atlas::Args),
     /// Draw a BRDF: its lobe, its albedo and lit spheres
