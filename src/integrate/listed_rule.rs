@@ -103,7 +103,7 @@ impl ListedRule {
         match self.integral(index) {
             ListedSum::Limit(limit) => return limit,
             ListedSum::Samples(samples) => {
-                let setting = &self.settings[index / self.fixed.len()];
+                let setting = &self.settings[self.place(index)[0]];
                 for Sample { pair, azimuth, weight } in &samples {
                     add(*weight, (model.lobe)(pair, azimuth, setting));
                 }
@@ -115,18 +115,21 @@ impl ListedRule {
     /// How a lobe's facets are visited, where its integral of an index has facets.
     pub fn facets(&self, index: usize, model: &Model) -> Option<&'static FacetSum> {
         let facets = model.microfacet?.facets.as_ref()?;
-        let At { setting, fixed, .. } = self.at(index);
-        match self.source {
-            ListedSource::Map(map) => (map.limit)(fixed.mu, &setting).is_none().then_some(facets),
-            _ => None,
-        }
+        let ListedSource::Map(map) = self.source else { return None };
+        let [row, column] = self.place(index);
+        (map.limit)(self.fixed[column].mu, &self.settings[row]).is_none().then_some(facets)
+    }
+
+    /// The places of an index's setting and fixed direction.
+    fn place(&self, index: usize) -> [usize; 2] {
+        [index / self.fixed.len(), index % self.fixed.len()]
     }
 
     /// What an inner integral of an index has.
     pub fn at(&self, index: usize) -> At {
-        let row = index / self.fixed.len();
+        let [row, column] = self.place(index);
         let scale = self.scales.get(row).cloned().unwrap_or_default();
-        let fixed = &self.fixed[index % self.fixed.len()];
+        let fixed = &self.fixed[column];
         let fixed = Fixed { kinks: scale.kinks(fixed.mu), ..fixed.clone() };
         At { setting: self.settings[row], fixed, scale }
     }

@@ -165,7 +165,7 @@ fn along(
     samples: &mut Vec<Sample>,
 ) {
     let azimuth: [f64; 2] = fixed.phi.sin_cos().into();
-    for strip in strips(turn, fixed, tolerance, normals) {
+    for strip in strips(turn, fixed, tolerance, normals.end, &normals.kinks, normals.turn) {
         for node in nodes {
             let (r, dr) = strip.node(node);
             samples.extend(sample(turn, fixed, azimuth, &(normals.at)(r), dr));
@@ -211,10 +211,17 @@ impl Strip {
     }
 }
 
-/// The strips of an azimuth, from the normal to the horizon.
-fn strips(turn: &Turn, fixed: &Fixed, tolerance: f64, normals: &Normals) -> Vec<Strip> {
+/// The strips of an azimuth, from the normal to the horizon: see [`Normals`].
+fn strips(
+    turn: &Turn,
+    fixed: &Fixed,
+    tolerance: f64,
+    end_at: &dyn Fn(f64) -> f64,
+    kinks: &Kinks,
+    horizon: Option<HorizonTurn>,
+) -> Vec<Strip> {
     let Turn { c, t_max, .. } = *turn;
-    let (mu, kinks) = (fixed.mu, &normals.kinks);
+    let mu = fixed.mu;
     // cos θe = μ (1 + 2ct − t²)/(1 + t²) is k where (μ + k) t² − 2μct + k − μ = 0.
     let roots = |&k: &f64| {
         let root = (mu * mu * c * c - (k - mu) * (k + mu)).max(0.0).sqrt();
@@ -225,17 +232,17 @@ fn strips(turn: &Turn, fixed: &Fixed, tolerance: f64, normals: &Normals) -> Vec<
     stops.retain(|&t| 0.0 < t && t < t_max);
     stops.push(t_max);
     stops.sort_by(f64::total_cmp);
-    let ends: Vec<_> = [0.0].into_iter().chain(stops.into_iter().map(normals.end)).collect();
+    let ends: Vec<_> = [0.0].into_iter().chain(stops.into_iter().map(end_at)).collect();
     // r = scale sinh x, whose x is r at r ≪ scale, and its logarithm beyond: what turns on that scale is smooth in x. A
     // scale that holds less than the tolerance is not worth nodes.
     let least = 0.1 * tolerance.sqrt();
-    let scale = (kinks.turn)(c).map(|t| (normals.end)(t).max(least));
+    let scale = (kinks.turn)(c).map(|t| end_at(t).max(least));
     let graded = |r: f64| scale.map_or(r, |scale| (r / scale).asinh());
     let mut strips = Vec::new();
     for (k, panel) in ends.windows(2).enumerate() {
         let is_last = k + 2 == ends.len();
         // The last of r before the horizon is a strip of its own, if something turns there.
-        let turn = normals.turn.filter(|turn| is_last && turn.0 < 0.5 && panel[1] - panel[0] > 1.5);
+        let turn = horizon.filter(|turn| is_last && turn.0 < 0.5 && panel[1] - panel[0] > 1.5);
         let end = if turn.is_some() { panel[1] - 1.0 } else { panel[1] };
         let (start, width) = (graded(panel[0]), graded(end) - graded(panel[0]));
         strips.push(match scale {
@@ -255,18 +262,10 @@ fn strips(turn: &Turn, fixed: &Fixed, tolerance: f64, normals: &Normals) -> Vec<
 ///
 /// `azimuth_i` is the sine and the cosine of φi.
 fn sample(turn: &Turn, fixed: &Fixed, azimuth_i: [f64; 2], normal: &Normal, dr: f64) -> Option<Sample> {
-    let Turn { sin: sin_turn, cos, t_max, weight: azimuth, .. } = *turn;
-    let (mu, sin) = (fixed.mu, fixed.sin());
     let Normal { p, m, solid_angle } = *normal;
-    let solid_angle = solid_angle * dr * azimuth;
-    // ωe = 2 (ωi·ωm) ωm − ωi
-    let y = m * m + p * p;
-    let root = y.sqrt();
-    let projected = (sin * cos * p + mu * m) / root; // ωi·ωm
-    let x_e = 2.0 * projected * (p / root) * cos - sin;
-    let y_e = 2.0 * projected * (p / root) * sin_turn;
-    let t = p / m;
-    let mu_e = m * m / y * mu * (t_max - t) * (t + 1.0 / t_max);
+    let solid_angle = solid_angle * dr * turn.weight;
+    let (mu, sin) = (fixed.mu, fixed.sin());
+    let Reflected { c: projected, mu_e, x_e, y_e, .. } = reflect(turn, [mu, sin], [p, m]);
     if !(mu_e > 0.0 && solid_angle.is_finite()) {
         return None;
     }
@@ -274,6 +273,28 @@ fn sample(turn: &Turn, fixed: &Fixed, azimuth_i: [f64; 2], normal: &Normal, dr: 
     let pair = Pair::of_cosines_and_sines([mu, mu_e], [sin, (x_e * x_e + y_e * y_e).sqrt()]);
     let azimuth = Azimuth::of_sines_and_cosines(azimuth_i, [-y_e, -x_e]);
     Some(Sample { pair, azimuth, weight: 4.0 * projected * mu_e * solid_angle })
+}
+
+/// The direction ωe = 2 (ωi·ωm) ωm − ωi that a normal reflects ωi to.
+struct Reflected {
+    /// ωi·ωm
+    c: f64,
+    mu_e: f64,
+    /// Its tangential part along the azimuth of ωi, and across.
+    x_e: f64,
+    y_e: f64,
+    /// √(m² + p²)
+    root: f64,
+}
+
+/// The reflection at the normal tan θm = p/m of an azimuth, of ωi with these cosine and sine.
+fn reflect(turn: &Turn, [mu, sin]: [f64; 2], [p, m]: [f64; 2]) -> Reflected {
+    let y = m * m + p * p;
+    let root = y.sqrt();
+    let c = (sin * turn.cos * p + mu * m) / root;
+    let (t, q) = (p / m, 2.0 * c * (p / root));
+    let mu_e = m * m / y * mu * (turn.t_max - t) * (t + 1.0 / turn.t_max);
+    Reflected { c, mu_e, x_e: q * turn.cos - sin, y_e: q * turn.sin, root }
 }
 
 /// A rule, or one on each side of a break.

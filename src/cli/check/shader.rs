@@ -33,7 +33,7 @@ pub fn named(args: &Args) -> Result<Option<(PathBuf, Option<String>)>> {
 }
 
 pub fn check_shader(args: &Args, path: &Path, entry: Option<String>) -> Result<()> {
-    let mut function = read(args, path, entry)?;
+    let mut function = UserFunction::read(path, &options(args, entry)?)?;
     resources::bind(&mut function, &args.bind)?;
     let parameters = ranges(&function, &args.set)?;
     let understood = function.describe(&parameters);
@@ -101,28 +101,13 @@ pub fn check_shader(args: &Args, path: &Path, entry: Option<String>) -> Result<(
 }
 
 /// How the command line wants the shader to be read.
-/// Reads the function. What `--set` names is a parameter, whatever it is called: `nv` may be an exponent.
-fn read(args: &Args, path: &Path, entry: Option<String>) -> Result<UserFunction> {
-    let mut options = options(args, entry)?;
-    let function = UserFunction::read(path, &options)?;
-    let settable = function.settable();
-    let is_known = |name: &str| settable.iter().any(|known| known.split(':').next() == Some(name));
-    let names = args.set.iter().filter_map(|set| Some(set.split_once('=')?.0.trim()));
-    let unknown: Vec<_> = names.filter(|name| !name.contains(['.', '[']) && !is_known(name)).collect();
-    if unknown.is_empty() {
-        return Ok(function);
-    }
-    options.roles.extend(unknown.into_iter().map(|name| (name.to_string(), "parameter".to_string())));
-    // Where it is no argument at all, the function as it was says what there is.
-    Ok(UserFunction::read(path, &options).unwrap_or(function))
-}
-
 fn options(args: &Args, entry: Option<String>) -> Result<ShaderOptions> {
     let mut options = ShaderOptions {
         entry,
         result: args.result.clone(),
         up: args.up.parse().map_err(|error: Error| error.at("--up"))?,
         includes: args.include.clone(),
+        parameters: args.set.iter().filter_map(|set| Some(set.split_once('=')?.0.trim().into())).collect(),
         ..ShaderOptions::default()
     };
     for role in &args.role {

@@ -15,7 +15,7 @@ use crate::base::quadrature::{Node, gauss_legendre};
 use crate::base::tolerance::{decade, is_fine};
 use crate::model::directions::{Fixed, Sample};
 use crate::model::half_vector::stretched::panels;
-use crate::model::half_vector::{Kinks, Normal, Normals, Strip, normal, sample, strips};
+use crate::model::half_vector::{Kinks, Normal, Strip, normal, sample, strips};
 use crate::model::ndf::Ndf;
 use crate::model::parameters::Setting;
 use crate::model::slope_azimuths::{Turn, turn_of, turns};
@@ -42,11 +42,10 @@ pub(crate) fn samples<N: Ndf>(
         let s = alpha.map_or(*s, |alpha| Setting { alpha, ..*s });
         (turn, s)
     };
-    // The strips of an azimuth, and the normals of a coordinate, by the NDF's own map if it has one.
+    // The strips of an azimuth, by the NDF's own map if it has one.
     let strips = |turn: &Turn, s: &Setting| {
         let end = |t: f64| N::MAPS.map_or((t / median).asinh(), |maps| (maps.fine.end)(t, s));
-        let normals = Normals { end: &end, at: &|r| normal_at::<N>(r, s, median), kinks: *kinks, turn: None };
-        strips(turn, fixed, tolerance, &normals)
+        strips(turn, fixed, tolerance, &end, kinks, None)
     };
     let start: Vec<Chart> = azimuths
         .iter()

@@ -5,7 +5,7 @@
 use crate::base::quadrature::{Node, gauss_legendre};
 use crate::model::SlopeCounts;
 use crate::model::directions::{Fixed, Sample};
-use crate::model::half_vector::{Kinks, Normal, Normals, along, normal, strips};
+use crate::model::half_vector::{Kinks, Normals, Reflected, along, normal, reflect, strips};
 use crate::model::masking::{Masking, Toward};
 use crate::model::ndf::{Coordinate, MappedSlope, Ndf};
 use crate::model::parameters::Setting;
@@ -72,21 +72,14 @@ pub(crate) fn facets<N: Ndf, M: Masking>(
             let (turn, alpha) = panel.turn(node, fixed, axes);
             let s = Setting { alpha, ..*s };
             let end = |t| end(t, &s);
-            let none = |_: f64| Normal { p: 0.0, m: 1.0, solid_angle: 0.0 };
-            let normals = Normals { end: &end, at: &none, kinks: Kinks::NONE, turn: None };
             // dχ/2π: D of α(φ) is D times αx αy/α(φ)², which dφ has of dχ.
             let dchi = turn.weight * alpha * alpha / (x * y);
-            for strip in strips(&turn, fixed, tolerance, &normals) {
+            for strip in strips(&turn, fixed, tolerance, &end, &Kinks::NONE, None) {
                 for node in &nodes {
                     let (r, dr) = strip.node(node);
                     let MappedSlope { p, m, weight } = map(r, &s);
-                    let y_m = m * m + p * p;
-                    let root = y_m.sqrt();
-                    let (t, c) = (p / m, (sin * turn.cos * p + mu * m) / root);
-                    let mu_e = m * m / y_m * mu * (turn.t_max - t) * (t + 1.0 / turn.t_max);
-                    // ωe = 2 (ωi·ωm) ωm − ωi, in the frame of ωi and then of the tangent.
-                    let q = 2.0 * c * (p / root);
-                    let [x_i, y_i] = [q * turn.cos - sin, q * turn.sin];
+                    let Reflected { c, mu_e, x_e: x_i, y_e: y_i, root } = reflect(&turn, [mu, sin], [p, m]);
+                    // From the frame of ωi into that of the tangent.
                     let [x_e, y_e] = [x_i * cos_phi - y_i * sin_phi, x_i * sin_phi + y_i * cos_phi];
                     let sin2 = x_e * x_e + y_e * y_e;
                     let seen = ((x * x_e).powi(2) + (y * y_e).powi(2)) / sin2;

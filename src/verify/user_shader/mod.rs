@@ -53,6 +53,8 @@ pub struct ShaderOptions {
     pub entry: Option<String>,
     /// Roles of arguments by name, such as `("x", "NdotL")`; `parameter` for what is none.
     pub roles: Vec<(String, String)>,
+    /// What is a parameter where there is an argument of this name, whatever it is called: `nv` may be an exponent.
+    pub parameters: Vec<String>,
     /// The member of the result that is the BRDF, such as `specular`.
     pub result: Option<String>,
     /// The axis that is the normal.
@@ -124,7 +126,11 @@ impl UserFunction {
             "parameter" => Ok((name.clone(), None)),
             role => Ok((name.clone(), Some(role.parse()?))),
         });
-        let wishes = Wishes { roles: roles.collect::<Result<_>>()?, result: options.result.clone() };
+        let wishes = Wishes {
+            roles: roles.collect::<Result<_>>()?,
+            parameters: options.parameters.clone(),
+            result: options.result.clone(),
+        };
         limits::with_stack(is_deep, || {
             let items = items::items(&text, language);
             let shader = Shader { file, joined, text, items, language, wishes, up: options.up, is_deep };

@@ -139,6 +139,8 @@ pub(super) enum Understood {
 pub(super) struct Wishes {
     /// Roles by argument; none where it is a parameter.
     pub roles: Vec<(String, Option<Role>)>,
+    /// Names of parameters, where there are such arguments.
+    pub parameters: Vec<String>,
     pub result: Option<String>,
 }
 
@@ -262,6 +264,9 @@ impl Reader<'_> {
             let role = self.wishes.roles[k].1;
             self.used[k] |= role.as_ref().is_none_or(fits);
             return role.filter(fits);
+        }
+        if self.wishes.parameters.iter().any(|name| name == path) {
+            return None;
         }
         if let Some((_, role)) = self.positional.iter().find(|(name, _)| name == path) {
             return Some(*role);
