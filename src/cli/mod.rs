@@ -67,7 +67,7 @@ Examples:
   gonio bake scene.gltf --out tables
   gonio verify tables
   gonio eval --model ggx --set roughness=0.3 --theta-i 45deg --theta-e 45deg
-  gonio check --wgsl brdf.wgsl --entry brdf --set roughness=0.05..1
+  gonio check brdf.wgsl#brdf --set roughness=0.05..1
   gonio atlas --out atlas
   gonio plot ggx --set roughness=0.1,0.3,0.6 --out ggx.png
   gonio gallery --out gallery

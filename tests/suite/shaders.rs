@@ -415,6 +415,20 @@ mod command {
         assert_eq!(run.status.code(), Some(0), "{}{}", text(&run.stdout), text(&run.stderr));
     }
 
+    /// A repository keeps its exceptions beside the shader; a file that cannot be read is not passed over.
+    #[test]
+    fn exceptions_stand_beside_the_shader() {
+        let shader = "fn f(wi: vec3f, wo: vec3f) -> f32 { return 0.5; }";
+        let code = |files: &[(&str, &str)]| {
+            let dir = folder(files);
+            gonio(dir.path(), &["a.wgsl"]).status.code()
+        };
+        assert_eq!(code(&[("a.wgsl", shader)]), Some(1));
+        assert_eq!(code(&[("a.wgsl", shader), ("gonio-check.toml", "[allow]\nenergy = 1.58")]), Some(0));
+        assert_eq!(code(&[("a.wgsl", shader), ("gonio-check.toml", "[allow]\nenergy = 1.56")]), Some(1));
+        assert_eq!(code(&[("a.wgsl", shader), ("gonio-check.toml/a", "")]), Some(2));
+    }
+
     #[test]
     fn faults_say_what_to_write() {
         let texture = "@group(0) @binding(0) var lut: texture_2d<f32>; fn f(l: vec3f, v: vec3f) -> f32 { return textureLoad(lut, vec2u(0u), 0).x; }";

@@ -5,6 +5,7 @@ use crate::verify::Exceptions;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// The file's name.
@@ -36,10 +37,7 @@ struct CheckFile {
 /// Reads both. `subject` is the file that is checked, if there is one.
 pub fn read(args: &ExceptionArgs, subject: Option<&Path>) -> Result<Exceptions> {
     let mut exceptions = Exceptions::default();
-    let beside = subject.map(|path| path.with_file_name(FILE)).filter(|path| path.is_file());
-    if let Some(path) = beside {
-        let name = path.display().to_string();
-        let text = std::fs::read_to_string(&path).map_err(Error::io("read", &path))?;
+    if let Some((name, text)) = subject.map(beside).transpose()?.flatten() {
         let file: CheckFile = toml::from_str(&text).map_err(|e| Error::input(format!("{name}: {e}")))?;
         let at = |result: Result<()>| result.map_err(|error| error.at(&name));
         for (promise, &bound) in &file.allow {
@@ -64,6 +62,16 @@ pub fn read(args: &ExceptionArgs, subject: Option<&Path>) -> Result<Exceptions> 
         range(theta).and_then(|range| exceptions.theta(range)).map_err(|error| error.at("--theta"))?;
     }
     Ok(exceptions)
+}
+
+/// The name and the text of the file beside a subject, if there is one. One that cannot be read is not passed over.
+fn beside(subject: &Path) -> Result<Option<(String, String)>> {
+    let path = subject.with_file_name(FILE);
+    match std::fs::read_to_string(&path) {
+        Ok(text) => Ok(Some((path.display().to_string(), text))),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(Error::io("read", &path)(error)),
+    }
 }
 
 fn pair<'a>(option: &str, text: &'a str) -> Result<(&'a str, f64)> {
